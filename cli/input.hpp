@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The input that every command starts from: a study or a model alone, read and made into a building.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <geometry/building.hpp>
+#include <import/study.hpp>
+
+namespace clerestory {
+
+/// What a command line says about its input.
+struct InputArguments {
+  std::filesystem::path file;  ///< a study where it ends in .toml, else a model
+  std::optional<std::string> units;
+  std::optional<std::string> upAxis;
+};
+
+/// Adds the input and what may be said about it to `command`; they are stored in `arguments`.
+void addInputArguments(CLI::App& command, InputArguments& arguments);
+
+/// The study in the named file, or that of the named model alone; the command line stands over both.
+Study readInput(const InputArguments& arguments);
+
+/// Reads and cleans the study's model and finds its rooms. `begin` is told of each step before it begins;
+/// what the steps have to say is added to `diagnoses`.
+Building readBuilding(const Study& study, std::vector<Diagnosis>& diagnoses,
+                      const std::function<void(const std::string& step)>& begin);
+
+/// A diagnosis in one line.
+std::string warningText(const Diagnosis& diagnosis);
+
+/// Prints `text` on standard output. Throws MachineError where it cannot be written.
+void printResult(const std::string& text);
+
+}  // namespace clerestory

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reads and cleans a model as a study would, and tells what was found instead of solving its light.
+#include "inspect.hpp"
+
+#include <glm/common.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <iomanip>
+#include <memory>
+#include <sstream>
+
+#include "input.hpp"
+#include "progress.hpp"
+
+namespace clerestory {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What `inspect` tells of a building beside what is stored in it.
+struct Totals {
+  glm::dvec3 lowest{0.0}, highest{0.0};
+  std::vector<double> materialArea_m2;  ///< #materials, one side of each piece
+  double portalArea_m2 = 0.0;
+};
+
+Totals totalsOf(const Building& building) {
+  const Pieces& pieces = building.model.pieces;
+  Totals totals;
+  if (!pieces.points.empty()) {
+    totals.lowest = totals.highest = pieces.points.front();
+  }
+  for (const glm::dvec3& point : pieces.points) {
+    totals.lowest = glm::min(totals.lowest, point);
+    totals.highest = glm::max(totals.highest, point);
+  }
+  totals.materialArea_m2.resize(building.model.materials.size());
+  for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
+    totals.materialArea_m2[pieces.material[piece]] += pieces.area_m2[piece];
+  }
+  for (const Portal& portal : building.portals) {
+    totals.portalArea_m2 += pieces.area_m2[portal.piece];
+  }
+  return totals;
+}
+
+/// A count of the clean-up: its key in JSON and its words.
+struct CleanupRow {
+  const char* key;
+  const char* words;
+  std::size_t count;
+};
+
+std::vector<CleanupRow> cleanupRows(const CleanupCounts& counts) {
+  return {{"points_read", "points read", counts.pointsRead},
+          {"faces_read", "faces read", counts.facesRead},
+          {"cages", "subdivision cages", counts.cages},
+          {"cage_facets", "facets of cages", counts.cageFacets},
+          {"points_welded", "points welded", counts.pointsWelded},
+          {"degenerate_faces", "degenerate faces removed", counts.degenerateFaces},
+          {"duplicate_faces", "duplicate faces removed", counts.duplicateFaces},
+          {"non_planar_faces", "faces that were not planar", counts.nonPlanarFaces},
+          {"pane_sheets_dropped", "further sheets of panes removed", counts.paneSheetsDropped},
+          {"polygons", "planar polygons after merging", counts.polygons},
+          {"pieces", "convex pieces of these", counts.pieces}};
+}
+
+Json vectorJson(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+Json inspectionJson(const Building& building, const Totals& totals, const std::vector<Diagnosis>& diagnoses) {
+  Json json;
+  json["extent_m"] = {{"lowest", vectorJson(totals.lowest)}, {"highest", vectorJson(totals.highest)}};
+  for (const CleanupRow& row : cleanupRows(building.model.counts)) {
+    json["cleanup"][row.key] = row.count;
+  }
+  json["materials"] = Json::array();
+  for (std::size_t i = 0; i < building.model.materials.size(); ++i) {
+    const Material& material = building.model.materials[i];
+    Json row = {
+        {"name", material.name}, {"area_m2", totals.materialArea_m2[i]}, {"glazing", material.glazing}};
+    row["reflectance"] = vectorJson(material.reflectance);
+    if (material.glazing) {
+      row["transmittance"] = vectorJson(material.transmittance);
+      row["transmittance_is_assumed"] = material.transmittanceIsAssumed;
+      row["panes"] = material.panes;
+    }
+    row["exitance_lm_m2"] = vectorJson(material.exitance_lm_m2);
+    json["materials"].push_back(std::move(row));
+  }
+  json["domains"] = Json::array();
+  for (const Domain& domain : building.domains) {
+    json["domains"].push_back({{"open", domain.open}, {"lit", domain.lit}, {"area_m2", domain.area_m2}});
+  }
+  json["portals"] = {{"count", building.portals.size()}, {"area_m2", totals.portalArea_m2}};
+  json["rooms"] = Json::array();
+  for (const Room& room : building.rooms) {
+    json["rooms"].push_back({{"name", room.name},
+                             {"domain", room.domain},
+                             {"floor_area_m2", room.floorArea_m2},
+                             {"volume_m3", room.volume_m3},
+                             {"floor_m", room.floor_m}});
+  }
+  json["diagnoses"] = Json::array();
+  for (const Diagnosis& diagnosis : diagnoses) {
+    json["diagnoses"].push_back({{"code", diagnosis.code},
+                                 {"message", diagnosis.message},
+                                 {"where", diagnosis.where},
+                                 {"count", diagnosis.count}});
+  }
+  return json;
+}
+
+// A colour as one number where it is grey, else as three.
+std::string colourText(const glm::dvec3& colour, int digits) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(digits) << colour.x;
+  if (colour.x != colour.y || colour.y != colour.z) {
+    text << ' ' << colour.y << ' ' << colour.z;
+  }
+  return text.str();
+}
+
+// How many characters of UTF-8 text there are.
+std::size_t lengthOf(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
+}
+
+/// A table of text whose columns are as wide as what stands in them; all but the first and the last are
+/// numbers.
+class Table {
+ public:
+  explicit Table(std::vector<std::string> header) { rows_.push_back(std::move(header)); }
+  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  [[nodiscard]] std::string text() const {
+    std::vector<std::size_t> widths(rows_.front().size());
+    for (const auto& row : rows_) {
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        widths[i] = std::max(widths[i], lengthOf(row[i]));
+      }
+    }
+    std::string text;
+    for (const auto& row : rows_) {
+      std::string line;
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        const std::string space(widths[i] - lengthOf(row[i]), ' ');
+        const bool isNumber = i > 0 && i + 1 < row.size();
+        line += "  " + (isNumber ? space + row[i] : row[i] + space);
+      }
+      text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    }
+    return text;
+  }
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+std::string number(double value, int digits) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(digits) << value;
+  return text.str();
+}
+
+std::string materialsText(const Building& building, const Totals& totals) {
+  Table table({"material", "area m2", "reflectance", "transmittance", "exitance lm/m2", ""});
+  for (std::size_t i = 0; i < building.model.materials.size(); ++i) {
+    const Material& material = building.model.materials[i];
+    const bool emits = material.exitance_lm_m2 != glm::dvec3(0.0);
+    table.add({printable(material.name), number(totals.materialArea_m2[i], 2),
+               colourText(material.reflectance, 3),
+               material.glazing ? colourText(material.transmittance, 3) : "",
+               emits ? colourText(material.exitance_lm_m2, 1) : "",
+               material.glazing && material.transmittanceIsAssumed ? "transmittance assumed" : ""});
+  }
+  return table.text();
+}
+
+std::string roomsText(const Building& building) {
+  Table table({"room", "floor m2", "volume m3", "floor at m", "air"});
+  for (const Room& room : building.rooms) {
+    table.add({printable(room.name), number(room.floorArea_m2, 2), number(room.volume_m3, 2),
+               number(room.floor_m, 2), std::to_string(room.domain)});
+  }
+  return table.text();
+}
+
+std::string airText(const Building& building) {
+  Table table({"air", "surface m2", "what it is"});
+  for (std::size_t i = 0; i < building.domains.size(); ++i) {
+    const Domain& domain = building.domains[i];
+    table.add({std::to_string(i), number(domain.area_m2, 2),
+               domain.open ? "open to the sky" : (domain.lit ? "closed, lit" : "closed, dark")});
+  }
+  return table.text();
+}
+
+std::string inspectionText(const Study& study, const Building& building, const Totals& totals,
+                           const std::vector<Diagnosis>& diagnoses) {
+  const glm::dvec3 size = totals.highest - totals.lowest;
+  std::string text = printable(study.modelFile.string()) + ": " + number(size.x, 2) + " x " +
+                     number(size.y, 2) + " x " + number(size.z, 2) + " m, from (" +
+                     number(totals.lowest.x, 2) + ", " + number(totals.lowest.y, 2) + ", " +
+                     number(totals.lowest.z, 2) + ")\n";
+  text += "\nWhat was read, and what became of it\n";
+  for (const CleanupRow& row : cleanupRows(building.model.counts)) {
+    std::ostringstream line;
+    line << std::setw(12) << row.count << "  " << row.words << '\n';
+    text += line.str();
+  }
+  text += "\nMaterials\n" + materialsText(building, totals);
+  text += "\nAir that is connected without crossing glass\n" + airText(building);
+  text += "\nWindows: " + std::to_string(building.portals.size()) +
+          (building.portals.size() == 1 ? " pane, " : " panes, ") + number(totals.portalArea_m2, 2) + " m2\n";
+  text += "\nRooms\n" + roomsText(building);
+  text += diagnoses.empty() ? "\nNothing to warn of.\n" : "\nWarnings\n";
+  for (const Diagnosis& diagnosis : diagnoses) {
+    text += "  " + printable(warningText(diagnosis)) + "\n";
+  }
+  return text;
+}
+
+void runInspect(const InputArguments& arguments, bool json) {
+  Study study = readInput(arguments);
+  study.grids.clear();  // a grid that finds no room would end the inspection that is to tell why
+  std::vector<Diagnosis> diagnoses;
+  const Building building = readBuilding(study, diagnoses, [](const std::string&) {});
+  const Totals totals = totalsOf(building);
+  if (json) {
+    // Names come from outside and may be no UTF-8.
+    printResult(
+        inspectionJson(building, totals, diagnoses).dump(2, ' ', false, Json::error_handler_t::replace) +
+        "\n");
+  } else {
+    printResult(inspectionText(study, building, totals, diagnoses));
+  }
+}
+
+}  // namespace
+
+void addInspectCommand(CLI::App& program, std::function<void()>& run) {
+  struct Arguments {
+    InputArguments input;
+    bool json = false;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App& command =
+      *program.add_subcommand("inspect", "Tell what is in a model, what was repaired and what could not be.");
+  addInputArguments(command, arguments->input);
+  command.add_flag("--json", arguments->json, "print it as JSON");
+  command.footer(
+      "Prints counts before and after the clean-up, materials with reflectance and area, the bodies of air,\n"
+      "windows and rooms, and every warning that a study would give. It solves nothing.\n\n"
+      "Examples:\n"
+      "  clerestory inspect office.glb\n"
+      "  clerestory inspect plan.obj --units mm --up y\n"
+      "  clerestory inspect study.toml        the same with the study's materials");
+  command.callback(
+      [arguments, &run] { run = [arguments] { runInspect(arguments->input, arguments->json); }; });
+}
+
+}  // namespace clerestory

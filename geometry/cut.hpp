@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cuts surfaces where panes and walls meet them, so that none is half inside, half outside.
+#pragma once
+
+#include <geometry/building.hpp>
+
+namespace clerestory {
+
+/// Splits opaque pieces (reveals, sills, frames) along the planes of the panes whose edges they meet.
+/// Areas add up; the canonical order of the pieces is kept.
+void cutAtPanes(Pieces& pieces, const std::vector<Material>& materials);
+
+/// Splits the marked pieces (a floor that runs through under a wall, a post that stands in a slab) along the
+/// planes of all pieces that meet them.
+void cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs);
+
+}  // namespace clerestory

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which sides of which pieces share the same air.
+#pragma once
+
+#include <geometry/building.hpp>
+#include <geometry/rays.hpp>
+
+namespace clerestory {
+
+/// Fills sideDomain, domains, portals and innerGlass of `building` from its model. Two places share the same
+/// air where something 6 cm wide could fly from one to the other; a narrower gap counts as closed.
+void findDomains(Building& building);
+
+/// Cuts the pieces that stand in two airs at what meets them; tells whether there were any.
+bool cutAtBorders(CleanModel& model);
+
+}  // namespace clerestory

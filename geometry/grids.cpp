@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sensor grids: points over a room's floor, within an outline, or from a list.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <geometry/sampling.hpp>
+
+#include "rooms.hpp"
+
+namespace clerestory {
+namespace {
+
+struct Rectangle {
+  glm::dvec2 low{1e300}, high{-1e300};
+
+  void add(const glm::dvec2& point) {
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+  }
+};
+
+/// Even-odd test; points on the outline may fall on either side.
+bool isWithin(const glm::dvec2& point, const std::vector<glm::dvec2>& outline) {
+  bool within = false;
+  for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
+    const glm::dvec2& a = outline[i];
+    const glm::dvec2& b = outline[j];
+    if ((a.y > point.y) != (b.y > point.y) && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y)) {
+      within = !within;
+    }
+  }
+  return within;
+}
+
+double distanceToOutline(const glm::dvec2& point, const std::vector<glm::dvec2>& outline) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
+    const glm::dvec2 edge = outline[i] - outline[j];
+    const double t =
+        glm::clamp(glm::dot(point - outline[j], edge) / std::max(glm::dot(edge, edge), 1e-18), 0.0, 1.0);
+    least = std::min(least, glm::length(point - outline[j] - t * edge));
+  }
+  return least;
+}
+
+std::vector<std::vector<glm::dvec2>> floorOutlines(const Building& building, const Room& room) {
+  std::vector<std::vector<glm::dvec2>> outlines;
+  for (const std::uint32_t piece : room.floorPieces) {
+    std::vector<glm::dvec2>& outline = outlines.emplace_back();
+    for (const std::uint32_t corner : building.model.pieces.polygons[piece]) {
+      outline.emplace_back(building.model.pieces.points[corner]);
+    }
+  }
+  return outlines;
+}
+
+/// The centred points of a rectangle: n = floor(length / spacing) of them each way.
+std::vector<glm::dvec2> pointsOf(const Rectangle& area, double spacing_m) {
+  const glm::dvec2 size = area.high - area.low;
+  const glm::dvec2 count = glm::max(glm::floor(size / spacing_m + 1e-6), glm::dvec2(1.0));
+  const glm::dvec2 first = area.low + 0.5 * (size - (count - 1.0) * spacing_m);
+  std::vector<glm::dvec2> points;
+  for (double row = 0; row < count.y; ++row) {
+    for (double column = 0; column < count.x; ++column)
+      points.push_back(first + spacing_m * glm::dvec2(column, row));
+  }
+  return points;
+}
+
+/// The room whose floor lies below a point in plan, the nearest one below it where there are several.
+std::int32_t roomBelow(const Building& building, const glm::dvec2& point, double below_m) {
+  std::int32_t found = -1;
+  for (std::size_t i = 0; i < building.rooms.size(); ++i) {
+    const Room& room = building.rooms[i];
+    if (room.floor_m > below_m) continue;
+    if (found >= 0 && room.floor_m <= building.rooms[static_cast<std::size_t>(found)].floor_m) continue;
+    const auto outlines = floorOutlines(building, room);
+    if (std::any_of(outlines.begin(), outlines.end(),
+                    [&](const auto& outline) { return isWithin(point, outline); })) {
+      found = static_cast<std::int32_t>(i);
+    }
+  }
+  return found;
+}
+
+SensorGrid gridOverRoom(const Building& building, const GridSettings& settings, std::int32_t roomIndex,
+                        const RayScene& rays) {
+  const Room& room = building.rooms[static_cast<std::size_t>(roomIndex)];
+  SensorGrid grid{settings.name, roomIndex, {}, {}, settings.spacing_m};
+  const auto outlines = floorOutlines(building, room);
+  Rectangle bounds;
+  for (const auto& outline : outlines) {
+    for (const glm::dvec2& corner : outline) bounds.add(corner);
+  }
+  bounds.low += settings.inset_m;
+  bounds.high -= settings.inset_m;
+  if (bounds.low.x >= bounds.high.x || bounds.low.y >= bounds.high.y) return grid;
+  for (const glm::dvec2& plan : pointsOf(bounds, settings.spacing_m)) {
+    const bool overFloor = std::any_of(outlines.begin(), outlines.end(),
+                                       [&](const auto& outline) { return isWithin(plan, outline); });
+    const glm::dvec3 point(plan, room.floor_m + settings.height_m);
+    if (overFloor && isInAir(building, rays, point, room.domain)) grid.points.push_back(point);
+  }
+  grid.normals.assign(grid.points.size(), {0, 0, 1});
+  return grid;
+}
+
+SensorGrid gridWithinOutline(const Building& building, const GridSettings& settings) {
+  Rectangle bounds;
+  for (const glm::dvec2& corner : settings.polygon_m) bounds.add(corner);
+  SensorGrid grid{settings.name, -1, {}, {}, settings.spacing_m};
+  grid.room = roomBelow(building, 0.5 * (bounds.low + bounds.high), std::numeric_limits<double>::infinity());
+  const double floor_m = grid.room < 0 ? 0.0 : building.rooms[static_cast<std::size_t>(grid.room)].floor_m;
+  for (const glm::dvec2& plan : pointsOf(bounds, settings.spacing_m)) {
+    if (!isWithin(plan, settings.polygon_m)) continue;
+    if (settings.inset_m > 0.0 && distanceToOutline(plan, settings.polygon_m) < settings.inset_m) continue;
+    grid.points.emplace_back(plan, floor_m + settings.height_m);
+  }
+  grid.normals.assign(grid.points.size(), {0, 0, 1});
+  return grid;
+}
+
+SensorGrid gridOfPoints(const Building& building, const GridSettings& settings) {
+  SensorGrid grid{settings.name, -1, {}, {}, settings.spacing_m};
+  for (const auto& row : settings.points) {
+    grid.points.emplace_back(row[0], row[1], row[2]);
+    grid.normals.push_back(glm::normalize(glm::dvec3(row[3], row[4], row[5])));
+  }
+  if (!grid.points.empty()) grid.room = roomBelow(building, grid.points.front(), grid.points.front().z);
+  return grid;
+}
+
+void addGrid(Building& building, SensorGrid grid) {
+  if (grid.points.empty()) {
+    throw InputError("the grid \"" + grid.name +
+                     "\" has no sensor: make its spacing or inset smaller, or check its outline and height");
+  }
+  building.grids.push_back(std::move(grid));
+}
+
+}  // namespace
+
+bool isInAir(const Building& building, const RayScene& rays, const glm::dvec3& point, std::int32_t domain) {
+  constexpr std::uint32_t count = 16;
+  const Sequence sequence(0xa17);
+  const glm::vec3 from(point - rays.origin());
+  std::uint32_t inAir = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const float z = 2.0F * sequence(i, 0) - 1.0F;
+    const float angle = 2.0F * std::numbers::pi_v<float> * sequence(i, 1);
+    const float radius = std::sqrt(std::max(0.0F, 1.0F - z * z));
+    const auto hit = rays.nearest(from, {radius * std::cos(angle), radius * std::sin(angle), z},
+                                  RayScene::Barrier::opaqueAndGlass);
+    const bool isOpen = building.domains[static_cast<std::size_t>(domain)].open;
+    if (hit ? building.sideDomain[hit.side()] == domain : isOpen) ++inAir;
+  }
+  return 4 * inAir >= 3 * count;
+}
+
+void layGrids(Building& building, const Study& study, const RayScene& rays) {
+  for (const GridSettings& settings : study.grids) {
+    if (!settings.points.empty()) {
+      addGrid(building, gridOfPoints(building, settings));
+      continue;
+    }
+    if (!settings.polygon_m.empty()) {
+      addGrid(building, gridWithinOutline(building, settings));
+      continue;
+    }
+    std::vector<std::int32_t> matching;
+    for (std::size_t i = 0; i < building.rooms.size(); ++i) {
+      if (globMatches(settings.room.value_or("*"), building.rooms[i].name)) {
+        matching.push_back(static_cast<std::int32_t>(i));
+      }
+    }
+    if (matching.empty()) {
+      throw InputError("the grid \"" + settings.name + "\" matches none of the " +
+                       std::to_string(building.rooms.size()) + " rooms found in the model (asked for: \"" +
+                       settings.room.value_or("*") + "\"); `clerestory inspect` lists them");
+    }
+    for (const std::int32_t room : matching) {
+      SensorGrid grid = gridOverRoom(building, settings, room, rays);
+      if (matching.size() > 1) {
+        grid.name += " " + building.rooms[static_cast<std::size_t>(room)].name;
+        if (grid.points.empty()) continue;  // a closet too small for the spacing
+      }
+      addGrid(building, std::move(grid));
+    }
+  }
+}
+
+}  // namespace clerestory

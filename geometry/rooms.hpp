@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rooms among the air domains, and sensor grids over their floors.
+#pragma once
+
+#include <geometry/building.hpp>
+#include <geometry/rays.hpp>
+
+namespace clerestory {
+
+/// Fills building.rooms: closed domains as large and as plump as a room, in an order and with names that do
+/// not depend on the file's order. Where no domain is closed, the covered floors of the outside are one room.
+void findRooms(Building& building, const RayScene& rays);
+
+/// Whether most of what can be seen from a point belongs to the domain: not so inside furniture or a wall.
+bool isInAir(const Building& building, const RayScene& rays, const glm::dvec3& point, std::int32_t domain);
+
+/// Fills building.grids from the study: one grid over each matching room's floor, an outline or a list of
+/// points. Throws InputError for a grid that matches no room or has no sensor.
+void layGrids(Building& building, const Study& study, const RayScene& rays);
+
+}  // namespace clerestory

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Repair of single faces: points on a grid and welded, degenerate and repeated faces dropped, warped ones
+// split.
+#include "weld.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+
+#include "triangulate.hpp"
+
+namespace clerestory {
+namespace {
+
+/// Kept points in cells as wide as the weld tolerance.
+class NearPoints {
+ public:
+  explicit NearPoints(double tolerance_m) : tolerance_m_(tolerance_m) {}
+
+  void add(const glm::dvec3& point, std::uint32_t index) {
+    cells_[key(cell(point))].push_back({point, index});
+  }
+
+  /// The nearest point within the tolerance (the first of equals), or `none`.
+  [[nodiscard]] std::uint32_t nearest(const glm::dvec3& point) const {
+    const Cell centre = cell(point);
+    double best = tolerance_m_;
+    std::uint32_t result = none;
+    for (std::int64_t dx = -1; dx <= 1; ++dx) {
+      for (std::int64_t dy = -1; dy <= 1; ++dy) {
+        for (std::int64_t dz = -1; dz <= 1; ++dz) {
+          const auto found = cells_.find(key({centre.x + dx, centre.y + dy, centre.z + dz}));
+          if (found == cells_.end()) continue;
+          for (const auto& [position, index] : found->second) {
+            const double distance = glm::length(position - point);
+            if (distance < best || (distance == best && result != none && index < result)) {
+              best = distance;
+              result = index;
+            }
+          }
+        }
+      }
+    }
+    return result;
+  }
+
+  static constexpr std::uint32_t none = 0xffffffffU;
+
+ private:
+  struct Cell {
+    std::int64_t x, y, z;
+  };
+  [[nodiscard]] Cell cell(const glm::dvec3& point) const {
+    const auto along = [&](double value) {
+      return static_cast<std::int64_t>(std::floor(value / tolerance_m_));
+    };
+    return {along(point.x), along(point.y), along(point.z)};
+  }
+  /// Cells that share a key are told apart by the distance test.
+  static std::uint64_t key(const Cell& c) {
+    return static_cast<std::uint64_t>(c.x) * 0x9e3779b97f4a7c15U ^
+           static_cast<std::uint64_t>(c.y) * 0xc2b2ae3d27d4eb4fU ^
+           static_cast<std::uint64_t>(c.z) * 0x165667b19e3779f9U;
+  }
+
+  double tolerance_m_;
+  std::unordered_map<std::uint64_t, std::vector<std::pair<glm::dvec3, std::uint32_t>>> cells_;
+};
+
+/// Calls `keep(corners)` for each face, which may change the corners or return false to drop the face.
+template <class Keep>
+void filterFaces(Soup& soup, Keep keep) {
+  PolygonList faces;
+  std::size_t kept = 0;
+  Loop corners;
+  for (std::size_t face = 0; face < soup.faces.size(); ++face) {
+    corners.assign(soup.faces[face].begin(), soup.faces[face].end());
+    if (!keep(face, corners)) continue;
+    faces.add(corners);
+    soup.material[kept] = soup.material[face];
+    soup.object[kept] = soup.object[face];
+    soup.displaced[kept] = soup.displaced[face];
+    ++kept;
+  }
+  soup.faces = std::move(faces);
+  soup.material.resize(kept);
+  soup.object.resize(kept);
+  soup.displaced.resize(kept);
+}
+
+/// Drops corners that repeat the one before, and spikes that go out and back on one edge.
+void dropRepeatedCorners(Loop& corners) {
+  bool changed = true;
+  while (changed && corners.size() >= 3) {
+    changed = false;
+    Loop kept;
+    for (const std::uint32_t corner : corners) {
+      if (!kept.empty() && kept.back() == corner) continue;
+      if (kept.size() >= 2 && kept[kept.size() - 2] == corner) {
+        kept.pop_back();
+        continue;
+      }
+      kept.push_back(corner);
+    }
+    while (kept.size() >= 2 && kept.front() == kept.back()) kept.pop_back();
+    while (kept.size() >= 3 && kept[kept.size() - 2] == kept.front()) kept.pop_back();
+    while (kept.size() >= 3 && kept[1] == kept.back()) kept.erase(kept.begin());
+    changed = kept.size() != corners.size();
+    corners = std::move(kept);
+  }
+}
+
+double longestEdge_m(std::span<const glm::dvec3> points, std::span<const std::uint32_t> loop) {
+  double longest = 0.0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    longest = std::max(longest, glm::length(points[loop[(i + 1) % loop.size()]] - points[loop[i]]));
+  }
+  return longest;
+}
+
+/// Largest distance of a corner from the plane through the corners' mean. [m]
+double warp_m(std::span<const glm::dvec3> points, std::span<const std::uint32_t> loop,
+              const glm::dvec3& unitNormal) {
+  double low = 1e300;
+  double high = -1e300;
+  for (const std::uint32_t corner : loop) {
+    const double height = glm::dot(points[corner] - points[loop[0]], unitNormal);
+    low = std::min(low, height);
+    high = std::max(high, height);
+  }
+  return 0.5 * (high - low);
+}
+
+/// Triangles of a warped polygon: Delaunay in its best plane where its outline is simple there, else a fan.
+std::vector<std::array<std::uint32_t, 3>> trianglesOf(std::span<const glm::dvec3> points, const Loop& loop,
+                                                      const glm::dvec3& unitNormal) {
+  const PlaneFrame frame(unitNormal, points[loop[0]]);
+  Loop corners = loop;  // once each, though a keyhole's bridge is walked twice
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  std::vector<glm::dvec2> flat;
+  for (const std::uint32_t corner : corners) flat.push_back(frame.project(points[corner]));
+  const auto place = [&](std::size_t i) {
+    const auto found = std::lower_bound(corners.begin(), corners.end(), loop[i % loop.size()]);
+    return static_cast<std::uint32_t>(found - corners.begin());
+  };
+  std::vector<PlaneEdge> edges;
+  for (std::size_t i = 0; i < loop.size(); ++i) edges.push_back({place(i), place(i + 1), 1});
+  std::vector<std::array<std::uint32_t, 3>> result;
+  for (const auto& triangle : triangulate(flat, edges).triangles) {
+    if (triangle.winding % 2 == 0) continue;
+    result.push_back({corners[triangle.corner[0]], corners[triangle.corner[1]], corners[triangle.corner[2]]});
+  }
+  if (result.empty()) {
+    for (std::size_t i = 2; i < loop.size(); ++i) result.push_back({loop[0], loop[i - 1], loop[i]});
+  }
+  return result;
+}
+
+}  // namespace
+
+Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts) {
+  std::vector<bool> used(soup.points.size(), false);
+  for (const std::uint32_t corner : soup.faces.corners) used[corner] = true;
+  std::vector<glm::dvec3> onTheGrid(soup.points.size());
+  Loop order;
+  for (std::uint32_t i = 0; i < soup.points.size(); ++i) {
+    if (!used[i]) continue;
+    onTheGrid[i] = onGrid(soup.points[i], tolerances.grid_m);
+    order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return lexicographicallyLess(onTheGrid[a], onTheGrid[b]);
+  });
+
+  Soup result;
+  NearPoints near(tolerances.weld_m);
+  Loop renumbered(soup.points.size());
+  for (const std::uint32_t point : order) {
+    std::uint32_t kept = near.nearest(onTheGrid[point]);
+    if (kept == NearPoints::none) {
+      kept = static_cast<std::uint32_t>(result.points.size());
+      near.add(onTheGrid[point], kept);
+      result.points.push_back(onTheGrid[point]);
+    } else {
+      ++counts.pointsWelded;
+    }
+    renumbered[point] = kept;
+  }
+  result.faces = soup.faces;
+  result.displaced.resize(soup.faces.size());
+  for (std::size_t face = 0; face < soup.faces.size(); ++face) {
+    result.displaced[face] = std::ranges::any_of(soup.faces[face], [&](std::uint32_t corner) {
+      return glm::length(result.points[renumbered[corner]] - onTheGrid[corner]) > tolerances.collinear_m;
+    });
+  }
+  for (std::uint32_t& corner : result.faces.corners) corner = renumbered[corner];
+  result.material = soup.material;
+  result.object = soup.object;
+  return result;
+}
+
+void dropDegenerateFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts,
+                         std::vector<Diagnosis>& diagnoses) {
+  std::size_t dropped = 0;
+  filterFaces(soup, [&](std::size_t, Loop& corners) {
+    dropRepeatedCorners(corners);
+    if (corners.size() >= 3) {
+      startAtSmallest(soup.points, corners);
+      const double area_m2 = 0.5 * glm::length(doubleAreaVector(soup.points, corners));
+      // Thin faces whose corners were kept apart by the weld stay: dropping them would open a slit.
+      if (area_m2 >= tolerances.degenerateArea_m2 &&
+          2.0 * area_m2 >= tolerances.collinear_m * longestEdge_m(soup.points, corners)) {
+        return true;
+      }
+    }
+    ++dropped;
+    return false;
+  });
+  counts.degenerateFaces += dropped;
+  if (dropped > 0) {
+    diagnoses.push_back({"G201", "faces without area were dropped", "", dropped});
+  }
+}
+
+std::vector<bool> findDuplicates(std::vector<Footprint> footprints, const NameRanks& ranks) {
+  Loop order(footprints.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+    const Footprint& a = footprints[i];
+    const Footprint& b = footprints[j];
+    if (a.corners != b.corners) return a.corners < b.corners;
+    if (a.material != b.material) return ranks.material[a.material] < ranks.material[b.material];
+    if (a.object != b.object) return ranks.object[a.object] < ranks.object[b.object];
+    if (a.front != b.front) return a.front;
+    return i < j;
+  });
+  std::vector<bool> result(footprints.size(), false);
+  for (std::size_t first = 0; first < order.size();) {
+    std::size_t end = first + 1;
+    while (end < order.size() && footprints[order[end]].corners == footprints[order[first]].corners) ++end;
+    for (std::size_t i = first; i < end; ++i) {
+      for (std::size_t j = first; j < i && !result[order[i]]; ++j) {
+        if (result[order[j]]) continue;
+        const Footprint& kept = footprints[order[j]];
+        const Footprint& later = footprints[order[i]];
+        if (kept.material == later.material || kept.front == later.front) result[order[i]] = true;
+      }
+    }
+    first = end;
+  }
+  return result;
+}
+
+void dropDuplicateFaces(Soup& soup, const NameRanks& ranks, CleanupCounts& counts,
+                        std::vector<Diagnosis>& diagnoses) {
+  std::vector<Footprint> footprints;
+  for (std::size_t face = 0; face < soup.faces.size(); ++face) {
+    Footprint footprint{Loop(soup.faces[face].begin(), soup.faces[face].end()), soup.material[face],
+                        soup.object[face],
+                        canonicalSign(glm::normalize(doubleAreaVector(soup.points, soup.faces[face]))) > 0.0};
+    std::sort(footprint.corners.begin(), footprint.corners.end());
+    footprints.push_back(std::move(footprint));
+  }
+  const std::vector<bool> duplicate = findDuplicates(std::move(footprints), ranks);
+  std::size_t dropped = 0;
+  filterFaces(soup, [&](std::size_t face, Loop&) {
+    dropped += duplicate[face] ? 1 : 0;
+    return !duplicate[face];
+  });
+  counts.duplicateFaces += dropped;
+  if (dropped > 0) {
+    diagnoses.push_back({"G202", "faces drawn twice were dropped", "", dropped});
+  }
+}
+
+void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts,
+                      std::vector<Diagnosis>& diagnoses) {
+  Soup result;
+  std::size_t warped = 0;
+  double worst_m = 0.0;
+  const auto add = [&](std::span<const std::uint32_t> corners, std::size_t face) {
+    result.faces.add(corners);
+    result.material.push_back(soup.material[face]);
+    result.object.push_back(soup.object[face]);
+    result.displaced.push_back(soup.displaced[face]);
+  };
+  for (std::size_t face = 0; face < soup.faces.size(); ++face) {
+    const Loop loop(soup.faces[face].begin(), soup.faces[face].end());
+    const glm::dvec3 normal = glm::normalize(doubleAreaVector(soup.points, loop));
+    const double warp = loop.size() > 3 ? warp_m(soup.points, loop, normal) : 0.0;
+    if (warp <= tolerances.planar_m) {
+      add(loop, face);
+      continue;
+    }
+    ++warped;
+    worst_m = std::max(worst_m, warp);
+    for (const auto& triangle : trianglesOf(soup.points, loop, normal)) {
+      Loop corners(triangle.begin(), triangle.end());
+      startAtSmallest(soup.points, corners);
+      if (glm::length(doubleAreaVector(soup.points, corners)) < 2.0 * tolerances.degenerateArea_m2) continue;
+      add(corners, face);
+    }
+  }
+  soup.faces = std::move(result.faces);
+  soup.material = std::move(result.material);
+  soup.object = std::move(result.object);
+  soup.displaced = std::move(result.displaced);
+  counts.nonPlanarFaces += warped;
+  if (warped > 0) {
+    const auto worst_mm = static_cast<long>(std::lround(worst_m * 1e3));
+    diagnoses.push_back({"G203",
+                         "non-planar faces were split into triangles; the worst leaves its plane by " +
+                             std::to_string(worst_mm) + " mm",
+                         "", warped});
+  }
+}
+
+}  // namespace clerestory

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Repair of single faces: points on a grid and welded, degenerate and repeated faces dropped, warped ones
+// split.
+#pragma once
+
+#include "soup.hpp"
+
+namespace clerestory {
+
+/// Puts points on the grid and welds those nearer than the tolerance: each goes to the nearest of the points
+/// kept before it in lexicographic order. The result's points are sorted, used, and free of duplicates.
+Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts);
+
+/// Drops repeated corners and faces without area; starts every face at its smallest corner.
+void dropDegenerateFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts,
+                         std::vector<Diagnosis>& diagnoses);
+
+/// A face or polygon as far as its being drawn twice is concerned.
+struct Footprint {
+  Loop corners;  ///< sorted
+  std::uint32_t material, object;
+  bool front;  ///< its normal has the canonical sign
+};
+
+/// Which of them are drawn already: the same corners in the same material, or wound the same way in another.
+/// The first by names is kept.
+std::vector<bool> findDuplicates(std::vector<Footprint> footprints, const NameRanks& ranks);
+
+/// Drops faces that are drawn twice.
+void dropDuplicateFaces(Soup& soup, const NameRanks& ranks, CleanupCounts& counts,
+                        std::vector<Diagnosis>& diagnoses);
+
+/// Splits faces whose corners leave their plane into triangles.
+void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts,
+                      std::vector<Diagnosis>& diagnoses);
+
+}  // namespace clerestory

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is asked of a model: study.toml as a structure, read, defaulted and written back.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <import/scene.hpp>
+
+namespace clerestory {
+
+struct Site {
+  double latitude_deg = 47.37;  ///< north
+  double longitude_deg = 8.54;  ///< east
+  double timeZone_h = 1.0;      ///< east of UTC
+  double north_deg = 0.0;       ///< direction of north in plan, clockwise from +y
+  double externalDiffuse_lx = 16000.0;
+};
+
+/// `[materials."glob"]`: what stands over the model's own words.
+struct MaterialRule {
+  std::string glob;
+  std::optional<glm::dvec3> reflectance;    ///< [0, 1)
+  std::optional<glm::dvec3> transmittance;  ///< [0, 1], normal incidence
+  std::optional<int> panes;
+  std::optional<glm::dvec3> exitance_lm_m2;
+};
+
+struct SkySettings {
+  int cieType = 16;  ///< 1 … 15 as CIE S 011, 16 the traditional overcast sky; 0: uniform (same as 5)
+  double diffuseHorizontal_lx = 10000.0;
+  std::optional<glm::dvec2> sun_deg;  ///< altitude, azimuth from north over east
+};
+
+struct GridSettings {
+  std::string name;
+  std::optional<std::string> room;    ///< glob over room names; with no polygon and no points: every room
+  std::vector<glm::dvec2> polygon_m;  ///< plan outline
+  std::vector<std::array<double, 6>> points;  ///< x y z nx ny nz, read from the named file
+  std::string pointsFile;
+  double height_m = 0.85;
+  double spacing_m = 0.25;
+  double inset_m = 0.0;
+};
+
+struct ViewSettings {
+  std::string name;
+  glm::dvec3 eye_m{0.0};
+  glm::dvec3 target_m{0.0, 1.0, 0.0};
+  glm::dvec3 up{0.0, 0.0, 1.0};
+  double fieldOfView_deg = 70.0;  ///< vertical
+  std::array<int, 2> size_px{1280, 720};
+  std::optional<double> exposure_ev;  ///< empty: automatic
+};
+
+/// A whole study. Everything has a default, so a model alone is a study too.
+struct Study {
+  std::filesystem::path modelFile;  ///< as found from the working directory
+  std::string modelFileAsWritten;   ///< as the study or the command line names it
+  ModelOptions model;
+  Site site;
+  std::vector<MaterialRule> materials;  ///< in the file's order: later ones win
+  SkySettings sky;
+  double groundReflectance = 0.2;
+  double dirtFactor = 1.0;   ///< on every portal's transmittance
+  double frameFactor = 1.0;  ///< likewise; 1 where the model draws its frames
+  std::vector<GridSettings> grids;
+  std::vector<ViewSettings> views;
+  double accuracy = 0.05;  ///< asked 95th percentile of the sensors' relative errors
+  double timeLimit_s = 0.0;
+  std::vector<std::string> assumptions;  ///< what was taken for granted, in sentences for the report
+};
+
+/// Reads a study. Unknown keys are an error that names the nearest known one; keys of later versions
+/// (luminaires, sun, openings) are an error that says so. Throws InputError with file and line.
+Study readStudy(const std::filesystem::path& file);
+
+/// The study of a model alone: overcast sky of 10,000 lx, a grid 0.85 m above each floor.
+Study studyOfModel(const std::filesystem::path& modelFile);
+
+/// "5%", "draft", "standard" or "fine" as a fraction; empty where it is none of them.
+std::optional<double> parseAccuracy(const std::string& text);
+
+/// Applies the study's material rules to `scene` and checks what is stated. A rule that matches nothing is
+/// a diagnosis. Throws InputError naming the material.
+void applyMaterialRules(const Study& study, Scene& scene);
+
+/// study.toml text that gives `study` again, with comments for what was assumed.
+std::string studyToml(const Study& study);
+
+}  // namespace clerestory

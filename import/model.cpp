@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reads a model of any known format and brings it into metres, z up, with its cages chosen.
+#include <algorithm>
+#include <cstdio>
+
+#include "cage.hpp"
+#include "gltf.hpp"
+#include "obj.hpp"
+#include "textfile.hpp"
+#include "units.hpp"
+
+namespace clerestory {
+namespace {
+
+/// How a format is meant where nothing is said.
+struct Format {
+  bool isObj;
+  std::string upAxis;
+};
+
+void checkOptions(const ModelOptions& options) {
+  if (options.units && !metresOf(*options.units)) {
+    throw InputError("unit \"" + *options.units + "\" is not known; use m, cm, mm, ft or in");
+  }
+  if (options.upAxis && *options.upAxis != "y" && *options.upAxis != "z") {
+    throw InputError("up axis \"" + *options.upAxis + "\" is not known; use y or z");
+  }
+  for (const ModelOptions::Subdivide& rule : options.subdivide) {
+    if (rule.scheme != "none" && !parseScheme(rule.scheme)) {
+      throw InputError("subdivision scheme \"" + rule.scheme + "\" for \"" + rule.object +
+                       "\" is not known; use catmark, loop, bilinear or none");
+    }
+  }
+}
+
+std::string lengthText(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.3g", metres);
+  return text;
+}
+
+std::string sizeText(const glm::dvec3& extent, double metres) {
+  return lengthText(extent.x * metres) + " x " + lengthText(extent.y * metres) + " x " +
+         lengthText(extent.z * metres) + " m";
+}
+
+/// Metres of the model's unit: as asked, else metres, else the one unit that makes it a building.
+double chooseUnit(const std::filesystem::path& file, const Format& format, const ModelOptions& options,
+                  Scene& scene) {
+  if (options.units) {
+    return *metresOf(*options.units);
+  }
+  const SizeJudgement size = judgeSize(scene);
+  if (size.metresArePossible) {
+    return 1.0;
+  }
+  const std::string asMetres = sizeText(size.extent, 1.0);
+  if (size.others.size() == 1) {
+    const double metres = *metresOf(size.others[0]);
+    addDiagnosis(scene.diagnoses, {"C101",
+                                   "as metres the model would measure " + asMetres + ", so it was read in " +
+                                       size.others[0] + " (" + sizeText(size.extent, metres) +
+                                       "); --units or [model] units says it for certain",
+                                   file.string()});
+    return metres;
+  }
+  if (!format.isObj) {
+    addDiagnosis(scene.diagnoses, {"C102",
+                                   "glTF is in metres, but that makes the model " + asMetres +
+                                       ", which is no building; --units or [model] units corrects it",
+                                   file.string()});
+    return 1.0;
+  }
+  throw InputError(file.string() + ": the model's unit is not clear: as metres it measures " + asMetres +
+                   ", as cm " + sizeText(size.extent, 0.01) + ", as mm " + sizeText(size.extent, 0.001) +
+                   ", as ft " + sizeText(size.extent, 0.3048) + "; state it with --units or [model] units");
+}
+
+void bringUpright(Scene& scene, const std::string& upAxis, double metres) {
+  for (glm::dvec3& point : scene.points) {
+    if (upAxis == "y") {
+      point = {point.x, -point.z, point.y};
+    }
+    point *= metres;
+  }
+}
+
+void setScheme(Scene& scene, Cage& cage, const ModelOptions::Subdivide& rule) {
+  cage.scheme = parseScheme(rule.scheme).value_or(cage.scheme);
+  cage.tolerance_m = rule.tolerance_m.value_or(cage.tolerance_m);
+  checkCage(cage, scene);
+}
+
+/// Applies one rule; later ones stand over earlier ones.
+void applySubdivision(Scene& scene, const ModelOptions::Subdivide& rule) {
+  std::vector<bool> matches(scene.objects.size());
+  std::transform(scene.objects.begin(), scene.objects.end(), matches.begin(),
+                 [&](const std::string& name) { return globMatches(rule.object, name); });
+  if (std::find(matches.begin(), matches.end(), true) == matches.end()) {
+    addDiagnosis(scene.diagnoses,
+                 {"C143", "subdivision asked for objects that are not there", "\"" + rule.object + "\""});
+    return;
+  }
+  std::vector<bool> chosen;
+  for (Cage& cage : scene.cages) {
+    chosen.push_back(matches[cage.object]);
+    if (matches[cage.object] && rule.scheme != "none") {
+      setScheme(scene, cage, rule);
+    }
+  }
+  if (rule.scheme == "none") {
+    moveCagesToFaces(scene, chosen);
+    return;
+  }
+  std::map<std::uint32_t, Cage> cages;
+  for (std::uint32_t object = 0; object < matches.size(); ++object) {
+    if (matches[object]) {
+      cages[object].scheme = *parseScheme(rule.scheme);
+      cages[object].tolerance_m = rule.tolerance_m.value_or(Cage{}.tolerance_m);
+    }
+  }
+  moveFacesToCages(scene, cages);
+}
+
+}  // namespace
+
+Scene readModel(const std::filesystem::path& file, const ModelOptions& options) {
+  checkOptions(options);
+  const std::string ending = lowerCase(file.extension().string());
+  const bool isObj = ending == ".obj";
+  if (!isObj && ending != ".gltf" && ending != ".glb") {
+    throw InputError(file.string() +
+                     ": a model's name ends in .obj, .gltf or .glb; export it as one of these");
+  }
+  const Format format{isObj, isObj ? "z" : "y"};
+  Scene scene = isObj ? readObj(file) : readGltf(file);
+  if (scene.faces.size() == 0 && scene.cages.empty()) {
+    throw InputError(file.string() + ": there is no face in the model; check that the export has geometry");
+  }
+  const double metres = chooseUnit(file, format, options, scene);
+  if (isObj && !options.upAxis && looksYUp(scene)) {
+    addDiagnosis(scene.diagnoses,
+                 {"C103",
+                  "the model was read with z up, but looks as if y were up: say so with --up y "
+                  "or up = \"y\" in [model]",
+                  file.string()});
+  }
+  bringUpright(scene, options.upAxis.value_or(format.upAxis), metres);
+  for (const ModelOptions::Subdivide& rule : options.subdivide) {
+    applySubdivision(scene, rule);
+  }
+  return scene;
+}
+
+bool globMatches(std::string_view glob, std::string_view name) {
+  const std::string pattern = lowerCase(glob);
+  const std::string text = lowerCase(name);
+  std::size_t p = 0;
+  std::size_t t = 0;
+  std::size_t star = std::string::npos;  // the last * met, and how far its run reaches
+  std::size_t run = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      run = t;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t])) {
+      ++p;
+      ++t;
+    } else if (star != std::string::npos) {
+      p = star + 1;
+      t = ++run;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string::npos;
+}
+
+}  // namespace clerestory

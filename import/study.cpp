@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reads study.toml: one function a table, every key known, every value checked.
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <import/study.hpp>
+
+#include "sensorpoints.hpp"
+#include "studytext.hpp"
+#include "textfile.hpp"
+#include "tomlsection.hpp"
+
+namespace clerestory {
+namespace {
+
+constexpr std::uintmax_t kMaxStudyBytes = 16U << 20U;
+constexpr Range kReflectance{0.0, 1.0, true, false};
+constexpr Range kFraction{0.0, 1.0};
+constexpr Range kFactor{0.0, 1.0, false, true};
+constexpr Range kExitance{0.0, 1e9};
+
+void readModelSection(const TomlSection& file, const std::filesystem::path& folder, Study& study) {
+  const auto section = file.section("model");
+  if (!section) {
+    file.fail("model", "names no model; begin with [model] and file = \"building.obj\"");
+  }
+  section->allowOnly({"file", "units", "up", "subdivide"});
+  const auto name = section->text("file");
+  if (!name || name->empty()) {
+    section->fail("file", "names no model; state file = \"building.obj\"");
+  }
+  study.modelFileAsWritten = *name;
+  study.modelFile = folder / std::filesystem::path(*name);
+  study.model.units = section->text("units");
+  if (study.model.units && !isUnit(*study.model.units)) {
+    section->fail("units", "units \"" + cleanName(*study.model.units) + "\" is not m, cm, mm, ft or in");
+  }
+  study.model.upAxis = section->text("up");
+  if (study.model.upAxis && *study.model.upAxis != "y" && *study.model.upAxis != "z") {
+    section->fail("up", "up \"" + cleanName(*study.model.upAxis) + "\" is not \"y\" or \"z\"");
+  }
+  for (const auto& [glob, rule] : section->named("subdivide")) {
+    rule.allowOnly({"scheme", "tolerance_m"});
+    const std::string scheme = rule.text("scheme").value_or("catmark");
+    if (scheme != "catmark" && scheme != "loop" && scheme != "bilinear" && scheme != "none") {
+      rule.fail("scheme", "scheme \"" + cleanName(scheme) + "\" is not catmark, loop, bilinear or none");
+    }
+    study.model.subdivide.push_back({glob, scheme, rule.number("tolerance_m", {0.0, 10.0, false})});
+  }
+}
+
+void readSite(const TomlSection& file, Study& study) {
+  const auto section = file.section("site");
+  if (!section) {
+    return;
+  }
+  section->allowOnly({"latitude", "longitude", "time_zone", "north", "external_diffuse_lx"});
+  Site& site = study.site;
+  site.latitude_deg = section->number("latitude", {-90, 90}).value_or(site.latitude_deg);
+  site.longitude_deg = section->number("longitude", {-180, 180}).value_or(site.longitude_deg);
+  site.timeZone_h = section->number("time_zone", {-12, 14}).value_or(site.timeZone_h);
+  site.north_deg = section->number("north", {-360, 360}).value_or(site.north_deg);
+  site.externalDiffuse_lx =
+      section->number("external_diffuse_lx", {0, 200000, false}).value_or(site.externalDiffuse_lx);
+}
+
+/// Reflectance has a message of its own: stating 1 or more is the commonest slip.
+std::optional<glm::dvec3> statedReflectance(const TomlSection& section) {
+  const auto value = section.color("reflectance", {-1e9, 1e9});
+  for (int i = 0; value && i < 3; ++i) {
+    if ((*value)[i] >= 1.0) {
+      section.fail("reflectance", "reflectance " + numberText((*value)[i]) +
+                                      " is not below 1; a white wall has about 0.85 (85 % is written 0.85)");
+    }
+    if ((*value)[i] < 0.0) {
+      section.fail("reflectance", "reflectance " + numberText((*value)[i]) + " is below 0");
+    }
+  }
+  return value;
+}
+
+void readMaterials(const TomlSection& file, Study& study) {
+  for (const auto& [glob, section] : file.named("materials")) {
+    section.allowOnly({"reflectance", "transmittance", "panes", "diffusing", "glass", "exitance"});
+    section.refuse({"glass"});
+    if (section.boolean("diffusing").value_or(false)) {
+      section.fail("diffusing", "diffusing = true is not supported by this version; take it out");
+    }
+    MaterialRule rule;
+    rule.glob = glob;
+    rule.reflectance = statedReflectance(section);
+    rule.transmittance = section.color("transmittance", kFraction);
+    if (const auto panes = section.integer("panes", 1, 10)) {
+      rule.panes = static_cast<int>(*panes);
+    }
+    rule.exitance_lm_m2 = section.color("exitance", kExitance);
+    study.materials.push_back(rule);
+  }
+}
+
+void readSun(const TomlSection& sky, Study& study) {
+  if (const auto sun = sky.section("sun")) {
+    sun->allowOnly({"altitude", "azimuth"});
+    const auto altitude = sun->number("altitude", {0, 90});
+    const auto azimuth = sun->number("azimuth", {-360, 360});
+    if (!altitude || !azimuth) {
+      sun->fail("", "needs altitude and azimuth, in degrees");
+    }
+    study.sky.sun_deg = glm::dvec2(*altitude, *azimuth);
+  }
+}
+
+void readSky(const TomlSection& file, Study& study) {
+  const auto section = file.section("sky");
+  if (!section) {
+    return;
+  }
+  section->allowOnly({"type", "diffuse_horizontal_lx", "direct_normal_lx", "time", "sun",
+                      "direct_normal_w_m2", "diffuse_horizontal_w_m2"});
+  section->refuse({"time", "direct_normal_w_m2", "diffuse_horizontal_w_m2"});
+  const std::string type = section->text("type").value_or("cie-overcast");
+  if (type == "perez") {
+    section->fail("type",
+                  "type = \"perez\" is not supported by this version; use a CIE sky, cie-1 to cie-16");
+  }
+  const auto number = skyTypeNumber(type);
+  if (!number) {
+    section->fail("type", "type \"" + cleanName(type) +
+                              "\" is no sky; use cie-1 to cie-15, cie-overcast, cie-clear or uniform");
+  }
+  study.sky.cieType = *number;
+  study.sky.diffuseHorizontal_lx =
+      section->number("diffuse_horizontal_lx", {0, 1e6, false}).value_or(study.sky.diffuseHorizontal_lx);
+  if (section->number("direct_normal_lx", {0, 1e6}).value_or(0.0) != 0.0) {
+    section->fail(
+        "direct_normal_lx",
+        "direct_normal_lx: the sun's beam is not supported by this version; state 0 or take it out");
+  }
+  readSun(*section, study);
+  if (skyNeedsSun(study.sky.cieType) && !study.sky.sun_deg) {
+    section->fail("type",
+                  "type \"" + type + "\" depends on the sun; add sun = { altitude = 40, azimuth = 180 }");
+  }
+}
+
+void readGround(const TomlSection& file, Study& study) {
+  const auto section = file.section("ground");
+  if (!section) {
+    return;
+  }
+  section->allowOnly({"reflectance", "model"});
+  study.groundReflectance = section->number("reflectance", kReflectance).value_or(study.groundReflectance);
+  const std::string model = section->text("model").value_or("uniform");
+  if (model != "uniform") {
+    section->fail("model", model == "shaded"
+                               ? "model = \"shaded\" is not supported by this version; use \"uniform\""
+                               : "model \"" + cleanName(model) + "\" is not known; use \"uniform\"");
+  }
+}
+
+void readGlazing(const TomlSection& file, Study& study) {
+  if (const auto section = file.section("glazing")) {
+    section->allowOnly({"dirt", "frame"});
+    study.dirtFactor = section->number("dirt", kFactor).value_or(study.dirtFactor);
+    study.frameFactor = section->number("frame", kFactor).value_or(study.frameFactor);
+  }
+}
+
+/// A name that no earlier one of its kind has: `Grid 2` where none is stated.
+std::string nameOf(const TomlSection& section, const std::string& kind, std::set<std::string>& taken) {
+  const std::string name = section.text("name").value_or(kind + " " + std::to_string(taken.size() + 1));
+  if (name.empty() || !taken.insert(name).second) {
+    section.fail("name", "name \"" + cleanName(name) + "\" is empty or taken already; give each one its own");
+  }
+  return name;
+}
+
+GridSettings readGrid(const TomlSection& section, const std::filesystem::path& folder,
+                      std::set<std::string>& taken) {
+  section.allowOnly({"name", "room", "polygon", "surface", "points", "height", "spacing", "inset"});
+  section.refuse({"surface"});
+  GridSettings grid;
+  grid.name = nameOf(section, "Grid", taken);
+  grid.room = section.text("room");
+  grid.polygon_m = section.polygon("polygon");
+  grid.pointsFile = section.text("points").value_or("");
+  if (section.has("room") + section.has("polygon") + section.has("points") > 1) {
+    section.fail("name", "states more than one of room, polygon and points; write a [[grid]] for each");
+  }
+  grid.height_m = section.number("height", {-100, 1000}).value_or(grid.height_m);
+  grid.spacing_m = section.number("spacing", {0.001, 1000}).value_or(grid.spacing_m);
+  grid.inset_m = section.number("inset", {0, 1000}).value_or(grid.inset_m);
+  if (section.has("points")) {
+    const auto file = fileInside(folder, grid.pointsFile);
+    if (!file) {
+      section.fail("points",
+                   "points \"" + cleanName(grid.pointsFile) + "\" has to lie in the study's folder");
+    }
+    grid.points = readSensorPoints(*file);
+  }
+  return grid;
+}
+
+void readGrids(const TomlSection& file, const std::filesystem::path& folder, Study& study) {
+  std::set<std::string> taken;
+  for (const TomlSection& section : file.list("grid")) {
+    study.grids.push_back(readGrid(section, folder, taken));
+  }
+}
+
+void readExposure(const TomlSection& section, ViewSettings& view) {
+  if (!section.has("exposure_ev")) {
+    return;
+  }
+  if (section.isText("exposure_ev")) {
+    if (section.text("exposure_ev") != "auto") {
+      section.fail("exposure_ev", "exposure_ev has to be \"auto\" or a number");
+    }
+    return;
+  }
+  view.exposure_ev = section.number("exposure_ev", {-50, 50});
+}
+
+ViewSettings readView(const TomlSection& section, std::set<std::string>& taken) {
+  section.allowOnly({"name", "projection", "eye", "target", "up", "field_of_view", "size", "exposure_ev"});
+  ViewSettings view;
+  view.name = nameOf(section, "view", taken);
+  const std::string projection = section.text("projection").value_or("perspective");
+  if (projection != "perspective") {
+    const bool later = projection == "fisheye" || projection == "panorama";
+    section.fail("projection", "projection \"" + cleanName(projection) + "\" is not " +
+                                   (later ? "supported by this version" : "known") + "; use \"perspective\"");
+  }
+  const auto eye = section.point("eye");
+  const auto target = section.point("target");
+  if (!eye || !target) {
+    section.fail("name", "needs eye and target, as [x, y, z] in metres");
+  }
+  view.eye_m = *eye;
+  view.target_m = *target;
+  view.up = section.point("up").value_or(view.up);
+  const glm::dvec3 direction = view.target_m - view.eye_m;
+  if (glm::length(glm::cross(direction, view.up)) <= 1e-9 * glm::length(direction) * glm::length(view.up)) {
+    section.fail("target", "eye and target have to differ, and up must not point along the view");
+  }
+  view.fieldOfView_deg = section.number("field_of_view", {1, 170}).value_or(view.fieldOfView_deg);
+  if (const auto size = section.pair("size")) {
+    if (std::min((*size)[0], (*size)[1]) < 1 || std::max((*size)[0], (*size)[1]) > 16384) {
+      section.fail("size", "size goes from 1 to 16384 pixels each way");
+    }
+    view.size_px = {static_cast<int>((*size)[0]), static_cast<int>((*size)[1])};
+  }
+  readExposure(section, view);
+  return view;
+}
+
+void readViews(const TomlSection& file, Study& study) {
+  std::set<std::string> taken;
+  for (const TomlSection& section : file.list("view")) {
+    study.views.push_back(readView(section, taken));
+  }
+}
+
+void readAccuracy(const TomlSection& file, Study& study) {
+  const auto section = file.section("accuracy");
+  if (!section) {
+    return;
+  }
+  section->allowOnly({"target", "time_limit_s"});
+  if (const auto target = section->text("target")) {
+    const auto accuracy = parseAccuracy(*target);
+    if (!accuracy) {
+      section->fail("target", "target \"" + cleanName(*target) +
+                                  "\" is not \"5%\" (0.1 to 50), draft, standard or fine");
+    }
+    study.accuracy = *accuracy;
+  }
+  if (section->number("time_limit_s", {0, 1e9}).value_or(0.0) != 0.0) {
+    section->fail("time_limit_s", "time_limit_s is not supported by this version; state 0 or take it out");
+  }
+}
+
+void readReport(const TomlSection& file, Study& study) {
+  const auto section = file.section("report");
+  if (!section) {
+    return;
+  }
+  section->allowOnly({"norms"});
+  std::string norms;
+  for (const std::string& norm : section->texts("norms")) {
+    norms += (norms.empty() ? "" : ", ") + cleanName(norm);
+  }
+  if (!norms.empty()) {
+    study.assumptions.push_back("The norms asked for (" + norms + ") are not judged by this version.");
+  }
+}
+
+}  // namespace
+
+Study readStudy(const std::filesystem::path& file) {
+  const std::string bytes = readWholeFile(file, "study", kMaxStudyBytes);
+  const std::string name = file.string();
+  const toml::table table = parseToml(plainText(bytes, name), name);
+  const TomlSection root(table, "", name);
+  root.allowOnly({"model", "site", "materials", "sky", "ground", "glazing", "opening", "luminaire", "grid",
+                  "view", "accuracy", "report"});
+  root.refuse({"luminaire", "opening"});
+  const std::filesystem::path folder = file.parent_path();
+  Study study;
+  readModelSection(root, folder, study);
+  readSite(root, study);
+  readMaterials(root, study);
+  readSky(root, study);
+  readGround(root, study);
+  readGlazing(root, study);
+  readGrids(root, folder, study);
+  readViews(root, study);
+  readAccuracy(root, study);
+  readReport(root, study);
+  assumeWhatIsMissing(study,
+                      {.sky = root.has("sky"), .ground = root.has("ground"), .north = root.has("site")});
+  return study;
+}
+
+Study studyOfModel(const std::filesystem::path& modelFile) {
+  Study study;
+  study.modelFile = modelFile;
+  study.modelFileAsWritten = modelFile.generic_string();
+  assumeWhatIsMissing(study, {});
+  return study;
+}
+
+}  // namespace clerestory

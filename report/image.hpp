@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures: exposure, display colours and files. The only place that knows OpenImageIO and OpenColorIO.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <solver/solution.hpp>
+
+#include "colormap.hpp"
+
+namespace clerestory {
+
+/// Rows from the top, sRGB, 3 bytes a pixel.
+struct DisplayImage {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> bytes;
+
+  DisplayImage(int width_px, int height_px, const DisplayColour& colour);
+  /// Fills the pixels whose centres lie in [x0, x1) × [y0, y1); what lies outside the picture is left out.
+  void fill(double x0, double y0, double x1, double y1, const DisplayColour& colour);
+};
+
+/// What a luminance of 1 cd/m² becomes in the picture's scene-linear values, where 0.18 is a middle grey.
+/// Automatic: the mean of the logarithm of luminance becomes 0.18. `exposure_ev` is the photographer's
+/// exposure value at ISO 100: a luminance of 0.125 × 2^EV cd/m² becomes 0.18.
+double exposureScale(const LuminanceImage& image, std::optional<double> exposure_ev);
+
+/// Scene-linear value to display-linear: the same up to a shoulder at 0.5, from there smoothly towards 1.
+double toneCurve(double value);
+
+/// The picture for a screen: exposed, its highlights rolled off, encoded to sRGB.
+DisplayImage displayImage(const LuminanceImage& image, double scale);
+
+/// Half float, scene-linear Rec.709, luminance times `scale`; the attributes clerestory:luminanceScale and
+/// whiteLuminance hold the cd/m² of 1.0. Throws MachineError.
+void writeExr(const std::filesystem::path& file, const LuminanceImage& image, double scale);
+
+/// Throws MachineError.
+void writePng(const std::filesystem::path& file, const DisplayImage& image);
+
+enum class TextAlign { left, centre, right };
+
+/// Writes ASCII text around the baseline y; without the font the picture stays without it.
+void drawText(DisplayImage& image, int x, int y, const std::string& text, int size_px,
+              const DisplayColour& colour, TextAlign align);
+
+}  // namespace clerestory

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Writes study.json, the same bytes for the same input, and run.json, which holds all that differs between
+// runs.
+#include "json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+#include "escape.hpp"
+#include "folder.hpp"
+#include "metrics.hpp"
+#include "numbers.hpp"
+#include "sha256.hpp"
+
+namespace clerestory {
+namespace {
+
+using Json = nlohmann::ordered_json;  // in the order written here, so that a reader finds the head first
+
+constexpr int formatNumber = 1;  ///< raised when a key changes its meaning
+
+/// A measured value as the tables print it; null where it is not finite.
+Json number(double value) {
+  const double written = asWritten(value);
+  return std::isfinite(written) ? Json(written) : Json(nullptr);
+}
+
+Json colour(const glm::dvec3& value) {
+  return Json::array({number(value.x), number(value.y), number(value.z)});
+}
+
+Json distribution(const Distribution& values) {
+  return {{"mean", number(values.mean)},
+          {"median", number(values.median)},
+          {"min", number(values.min)},
+          {"max", number(values.max)}};
+}
+
+Json inputs(const ReportInput& input) {
+  const std::optional<std::string> model = sha256OfFile(input.study.modelFile);
+  Study named = input.study;
+  named.modelFileAsWritten = modelName(input.study);  // the same study from whichever folder it was asked for
+  return {{"model", {{"file", modelName(input.study)}, {"sha256", model ? Json(*model) : Json(nullptr)}}},
+          {"study", {{"sha256", sha256(studyToml(named))}}}};
+}
+
+Json options(const Study& study) {
+  Json sky = {{"cie_type", study.sky.cieType},
+              {"diffuse_horizontal_lx", number(study.sky.diffuseHorizontal_lx)}};
+  if (study.sky.sun_deg) {
+    sky["sun_altitude_deg"] = number(study.sky.sun_deg->x);
+    sky["sun_azimuth_deg"] = number(study.sky.sun_deg->y);
+  }
+  return {{"accuracy", number(study.accuracy)},
+          {"time_limit_s", number(study.timeLimit_s)},
+          {"site",
+           {{"latitude_deg_north", number(study.site.latitude_deg)},
+            {"longitude_deg_east", number(study.site.longitude_deg)},
+            {"time_zone_h_east", number(study.site.timeZone_h)},
+            {"north_deg", number(study.site.north_deg)},
+            {"external_diffuse_lx", number(study.site.externalDiffuse_lx)}}},
+          {"sky", sky},
+          {"ground_reflectance", number(study.groundReflectance)},
+          {"dirt_factor", number(study.dirtFactor)},
+          {"frame_factor", number(study.frameFactor)}};
+}
+
+Json cleanup(const CleanupCounts& counts) {
+  return {{"points_read", counts.pointsRead},
+          {"faces_read", counts.facesRead},
+          {"cages", counts.cages},
+          {"cage_facets", counts.cageFacets},
+          {"points_welded", counts.pointsWelded},
+          {"degenerate_faces", counts.degenerateFaces},
+          {"duplicate_faces", counts.duplicateFaces},
+          {"non_planar_faces", counts.nonPlanarFaces},
+          {"pane_sheets_dropped", counts.paneSheetsDropped},
+          {"polygons", counts.polygons},
+          {"pieces", counts.pieces}};
+}
+
+Json gridJson(const ReportInput& input, std::size_t g) {
+  const GridMetrics m = metricsOf(input.solution.grids.at(g), input.study.sky);
+  Json grid = {{"name", validUtf8(input.building.grids[g].name)},
+               {"sensors", m.sensors},
+               {"spacing_m", number(input.building.grids[g].spacing_m)},
+               {"illuminance_lx", distribution(m.illuminance_lx)},
+               {"uniformity", number(m.uniformity)}};
+  if (m.daylightFactor_pct) {
+    grid["daylight_factor_pct"] = distribution(*m.daylightFactor_pct);
+    grid["share_of_sensors_above_2_pct"] = number(m.shareAbove2_pct);
+  }
+  grid["error_estimate_mean_pct"] = number(m.meanErrorEstimate_pct);
+  grid["error_estimate_95th_pct"] = number(m.p95ErrorEstimate_pct);
+  return grid;
+}
+
+Json gridsJson(const ReportInput& input, std::int32_t room) {
+  Json grids = Json::array();
+  for (const std::size_t g : gridsOfRoom(input.building, room)) grids.push_back(gridJson(input, g));
+  return grids;
+}
+
+Json rooms(const ReportInput& input) {
+  Json list = Json::array();
+  for (std::size_t r = 0; r < input.building.rooms.size(); ++r) {
+    const Room& room = input.building.rooms[r];
+    list.push_back({{"name", validUtf8(room.name)},
+                    {"domain", room.domain},
+                    {"floor_area_m2", number(room.floorArea_m2)},
+                    {"volume_m3", number(room.volume_m3)},
+                    {"floor_m", number(room.floor_m)},
+                    {"grids", gridsJson(input, static_cast<std::int32_t>(r))}});
+  }
+  return list;
+}
+
+Json surfaces(const ReportInput& input) {
+  Json list = Json::array();
+  const std::vector<std::string> names = surfaceRowNames(input);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const SurfaceValue& v = input.solution.surfaces[i];
+    const Material& material =
+        input.building.model.materials.at(input.building.model.surfaces[v.surface].material);
+    list.push_back({{"name", validUtf8(names[i])},
+                    {"room", validUtf8(roomName(input.building, v.room))},
+                    {"material", validUtf8(material.name)},
+                    {"area_m2", number(v.area_m2)},
+                    {"illuminance_lx",
+                     {{"mean", number(v.illuminanceMean_lx)},
+                      {"min", number(v.illuminanceMin_lx)},
+                      {"max", number(v.illuminanceMax_lx)}}},
+                    {"exitance_mean_lm_m2", colour(v.exitanceMean_lm_m2)},
+                    {"error_lx", number(v.error_lx)},
+                    {"elements", v.elements}});
+  }
+  return list;
+}
+
+Json materials(const CleanModel& model) {
+  Json list = Json::array();
+  for (const Material& material : model.materials) {
+    Json entry = {{"name", validUtf8(material.name)},
+                  {"reflectance", colour(material.reflectance)},
+                  {"exitance_lm_m2", colour(material.exitance_lm_m2)},
+                  {"glazing", material.glazing}};
+    if (material.glazing) {
+      entry["transmittance"] = colour(material.transmittance);
+      entry["transmittance_is_assumed"] = material.transmittanceIsAssumed;
+      entry["panes"] = material.panes;
+    }
+    list.push_back(entry);
+  }
+  return list;
+}
+
+Json energy(const Solution& solution) {
+  Json list = Json::array();
+  for (const EnergyBalance& balance : solution.balances) {
+    list.push_back({{"domain", balance.domain},
+                    {"emitted_lm", number(balance.emitted_lm)},
+                    {"absorbed_lm", number(balance.absorbed_lm)},
+                    {"escaped_lm", number(balance.escaped_lm)},
+                    {"unscaled_defect", number(balance.unscaledDefect)}});
+  }
+  return list;
+}
+
+Json diagnoses(const ReportInput& input) {
+  Json list = Json::array();
+  for (const Diagnosis& diagnosis : input.diagnoses) {
+    list.push_back({{"code", validUtf8(diagnosis.code)},
+                    {"message", validUtf8(withoutFolders(input.study, diagnosis.message))},
+                    {"where", validUtf8(withoutFolders(input.study, diagnosis.where))},
+                    {"count", diagnosis.count}});
+  }
+  return list;
+}
+
+Json texts(const std::vector<std::string>& list, const Study& study) {
+  Json array = Json::array();
+  for (const std::string& text : list) array.push_back(validUtf8(withoutFolders(study, text)));
+  return array;
+}
+
+std::string dumped(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string withoutFolders(const Study& study, std::string text) {
+  if (!study.modelFile.is_absolute()) return text;
+  const std::string folder = study.modelFile.parent_path().string() + "/";
+  if (folder.size() < 3) return text;  // "/" alone divides more than folders
+  for (std::size_t at; (at = text.find(folder)) != std::string::npos;) text.erase(at, folder.size());
+  return text;
+}
+
+std::string studyJson(const ReportInput& input) {
+  const Building& building = input.building;
+  const Json json = {{"generator", generatorMark},
+                     {"format", formatNumber},
+                     {"version", input.run.version},
+                     {"inputs", inputs(input)},
+                     {"options", options(input.study)},
+                     {"assumptions", texts(input.study.assumptions, input.study)},
+                     {"cleanup", cleanup(building.model.counts)},
+                     {"rooms", rooms(input)},
+                     {"grids_outside_rooms", gridsJson(input, -1)},
+                     {"surfaces", surfaces(input)},
+                     {"materials", materials(building.model)},
+                     {"light_domains", building.domains.size()},
+                     {"portals", building.portals.size()},
+                     {"solution",
+                      {{"elements", input.solution.elements},
+                       {"columns", input.solution.columns},
+                       {"grey", input.solution.grey},
+                       {"views", input.solution.views.size()}}},
+                     {"energy_balance", energy(input.solution)},
+                     {"diagnoses", diagnoses(input)}};
+  return dumped(json);
+}
+
+std::string runJson(const ReportInput& input) {
+  Json stages = Json::object();
+  double total_s = 0.0;
+  for (const auto& [stage, seconds] : input.run.stageSeconds) {
+    stages[validUtf8(stage)] = number(seconds);
+    total_s += seconds;
+  }
+  const Json json = {{"version", input.run.version},
+                     {"command_line", validUtf8(input.run.commandLine)},
+                     {"threads", input.run.threads},
+                     {"link_cache_bytes", input.run.linkCacheBytes},
+                     {"peak_memory_bytes", input.run.peakMemoryBytes},
+                     {"hierarchy_bytes", input.solution.hierarchyBytes},
+                     {"stage_seconds", stages},
+                     {"total_seconds", number(total_s)}};
+  return dumped(json);
+}
+
+}  // namespace clerestory

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Writes the page: what was computed, room by room, what was assumed, how accurate it is, how to do it again.
+#include "page.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "escape.hpp"
+#include "json.hpp"
+#include "metrics.hpp"
+#include "numbers.hpp"
+#include "page_parts.hpp"
+#include "page_style.hpp"
+#include "plan.hpp"
+#include "sha256.hpp"
+
+namespace clerestory {
+namespace {
+
+constexpr std::size_t mostSurfaceRows = 24;  // in a room's table; the rest is in surfaces.csv
+
+/// What all sections need, made once.
+struct Page {
+  const ReportInput& input;
+  const PagePictures& pictures;
+  PlanScale scale;
+  std::vector<std::string> surfaceNames;
+};
+
+std::string skyText(const Study& study) {
+  const int type = study.sky.cieType;
+  std::string sky = type == 16               ? "CIE traditional overcast sky (type 16)"
+                    : type == 1              ? "CIE overcast sky (type 1)"
+                    : type == 12             ? "CIE clear sky (type 12)"
+                    : type == 0 || type == 5 ? "uniform sky (CIE type 5)"
+                                             : "CIE sky type " + std::to_string(type);
+  sky += ", " + fixedNumber(study.sky.diffuseHorizontal_lx, 0) + " lx on unobstructed ground";
+  if (study.sky.sun_deg) {
+    sky += ", sun at " + roundedNumber(study.sky.sun_deg->x) + "° altitude and " +
+           roundedNumber(study.sky.sun_deg->y) + "° azimuth";
+  }
+  return sky;
+}
+
+std::string headHtml(const std::string& title) {
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
+         "style-src "
+         "'unsafe-inline'\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+         "<meta name=\"referrer\" content=\"no-referrer\">\n<title>" +
+         title + " – daylight study</title>\n<style>" + pageStyle + "</style>\n</head>\n<body>\n";
+}
+
+std::string contentsHtml(const Page& page) {
+  std::string html = "<nav aria-label=\"Contents\"><ul>\n";
+  for (std::size_t r = 0; r < page.input.building.rooms.size(); ++r) {
+    html += "<li><a href=\"#room-" + std::to_string(r) + "\">" +
+            escapeHtml(page.input.building.rooms[r].name) + "</a></li>\n";
+  }
+  html +=
+      "<li><a href=\"#assumptions\">Assumptions</a></li>\n<li><a href=\"#accuracy\">Accuracy</a></li>\n"
+      "<li><a href=\"#materials\">Materials</a></li>\n<li><a href=\"#again\">Reproduce</a></li>\n";
+  return html + "</ul></nav>\n";
+}
+
+std::string headerHtml(const Page& page) {
+  const Building& building = page.input.building;
+  const std::string model = modelName(page.input.study);
+  double floor_m2 = 0.0;
+  for (const Room& room : building.rooms) floor_m2 += room.floorArea_m2;
+  const std::size_t rooms = building.rooms.size();
+  std::string html = "<header>\n<p class=\"over\">Daylight study</p>\n<h1>" +
+                     escapeHtml(model.substr(0, model.find_last_of('.'))) + "</h1>\n<p class=\"lead\">" +
+                     (rooms == 1 ? "One room" : std::to_string(rooms) + " rooms") + " with " +
+                     fixedNumber(floor_m2, 1) + " m² of floor, under a " + skyText(page.input.study) +
+                     ".</p>\n";
+  return html + contentsHtml(page) + "</header>\n";
+}
+
+std::string viewFigure(const PageView& view) {
+  // Where middle grey lies: the luminance that a reader may compare with.
+  return "<figure><img src=\"data:image/png;base64," + base64(view.png) + "\" width=\"" +
+         std::to_string(view.width) + "\" height=\"" + std::to_string(view.height) +
+         "\" alt=\"Rendered view " + escapeHtml(view.name) + "\"><figcaption>View “" + escapeHtml(view.name) +
+         "”. Middle grey is " + roundedNumber(0.18 * view.white_cd_m2) + " cd/m²; luminances are in <code>" +
+         escapeHtml(view.fileStem) + ".exr</code>.</figcaption></figure>\n";
+}
+
+std::string viewsHtml(const std::vector<PageView>& views) {
+  if (views.empty()) return {};
+  std::string html = "<div class=\"views\">\n" + viewFigure(views.front());
+  if (views.size() > 1) {
+    html += "<div class=\"rest\">\n";
+    for (std::size_t v = 1; v < views.size(); ++v) html += viewFigure(views[v]);
+    html += "</div>\n";
+  }
+  return html + "</div>\n";
+}
+
+std::string overviewSection(const Page& page) {
+  const ReportInput& input = page.input;
+  std::vector<std::vector<std::string>> rows;
+  const bool withFactor = hasDaylightFactor(input.study.sky);
+  for (std::size_t g = 0; g < input.building.grids.size(); ++g) {
+    const SensorGrid& grid = input.building.grids[g];
+    const GridMetrics m = metricsOf(input.solution.grids.at(g), input.study.sky);
+    std::vector<std::string> row = {
+        escapeHtml(roomName(input.building, grid.room)), escapeHtml(grid.name),
+        illuminanceText(m.illuminance_lx.mean),          illuminanceText(m.illuminance_lx.median),
+        illuminanceText(m.illuminance_lx.min),           fixedNumber(m.uniformity, 2)};
+    if (withFactor) {
+      row.push_back(factorText(m.daylightFactor_pct->mean));
+      row.push_back(factorText(m.daylightFactor_pct->median));
+      row.push_back(fixedNumber(m.shareAbove2_pct, 0));
+    }
+    rows.push_back(row);
+  }
+  if (rows.size() < 2) return {};  // one grid's figures follow at once
+  std::vector<Column> columns = {{"Room", "", false}, {"Grid", "", false}, {"Mean", "lx"},
+                                 {"Median", "lx"},    {"Minimum", "lx"},   {"Uniformity", ""}};
+  if (withFactor) {
+    columns.insert(columns.end(), {{"Mean DF", "%"}, {"Median DF", "%"}, {"Area with DF ≥ 2 %", "%"}});
+  }
+  return sectionOpening("overview", "Overview") + tableHtml("Rooms and their grids", columns, rows) +
+         "</section>\n";
+}
+
+std::string gridFigures(const GridMetrics& m) {
+  const Distribution& lx = m.illuminance_lx;
+  std::string html = "<dl class=\"figures\">\n" +
+                     figureHtml("Mean illuminance", illuminanceText(lx.mean), "lx") +
+                     figureHtml("Median illuminance", illuminanceText(lx.median), "lx") +
+                     figureHtml("Minimum illuminance", illuminanceText(lx.min), "lx") +
+                     figureHtml("Uniformity, min ÷ mean", fixedNumber(m.uniformity, 2), "");
+  if (m.daylightFactor_pct) {
+    html += figureHtml("Mean daylight factor", factorText(m.daylightFactor_pct->mean), "%") +
+            figureHtml("Median daylight factor", factorText(m.daylightFactor_pct->median), "%") +
+            figureHtml("Minimum daylight factor", factorText(m.daylightFactor_pct->min), "%") +
+            figureHtml("Area with 2 % or more", fixedNumber(m.shareAbove2_pct, 0), "%");
+  }
+  return html + "</dl>\n";
+}
+
+std::string planFigure(const Page& page, std::size_t g) {
+  const SensorGrid& grid = page.input.building.grids[g];
+  std::string html = "<figure>\n";
+  if (page.pictures.plans.at(g).empty()) {
+    html += planSvg(page.input, g, page.scale);
+  } else {
+    html += "<img src=\"data:image/png;base64," + base64(page.pictures.plans.at(g)) +
+            "\" alt=\"Illuminance plan of " + escapeHtml(grid.name) + "\">\n";
+  }
+  return html + "<figcaption>Illuminance on “" + escapeHtml(grid.name) + "”, " +
+         fixedNumber(static_cast<double>(grid.points.size()), 0) +
+         " sensors. The scale is the same on every plan.</figcaption></figure>\n";
+}
+
+std::string norm(const Page& page, std::size_t g) {
+  const auto en = en17037Of(page.input.solution.grids.at(g), page.input.study);
+  if (!en) return {};
+  std::vector<std::vector<std::string>> rows;
+  for (const En17037::Level& level : en->levels) {
+    rows.push_back({level.name, factorText(level.target_pct), fixedNumber(level.shareTarget_pct, 0),
+                    factorText(level.minimum_pct), fixedNumber(level.shareMinimum_pct, 0),
+                    level.met ? "<span class=\"yes\">met</span>" : "not met"});
+  }
+  return tableHtml("EN 17037, daylight factor method, for " +
+                       fixedNumber(page.input.study.site.externalDiffuse_lx, 0) +
+                       " lx median external diffuse",
+                   {{"Level", "", false},
+                    {"Target DF", "%"},
+                    {"Sensors above, 50 asked", "%"},
+                    {"Minimum DF", "%"},
+                    {"Sensors above, 95 asked", "%"},
+                    {"", "", false}},
+                   rows);
+}
+
+std::string gridHtml(const Page& page, std::size_t g) {
+  const GridMetrics m = metricsOf(page.input.solution.grids.at(g), page.input.study.sky);
+  return "<h3>" + escapeHtml(page.input.building.grids[g].name) + "</h3>\n" + gridFigures(m) +
+         planFigure(page, g) + norm(page, g);
+}
+
+/// The surfaces of a room, the largest first.
+std::string surfaceTable(const Page& page, std::int32_t room) {
+  const Solution& solution = page.input.solution;
+  const CleanModel& model = page.input.building.model;
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < solution.surfaces.size(); ++i) {
+    if (knownRoom(page.input.building, solution.surfaces[i].room) == room) order.push_back(i);
+  }
+  if (order.empty()) return {};
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return solution.surfaces[a].area_m2 > solution.surfaces[b].area_m2;
+  });
+  const std::size_t left = order.size() - std::min(order.size(), mostSurfaceRows);
+  order.resize(order.size() - left);
+  std::vector<std::vector<std::string>> rows;
+  for (const std::size_t i : order) {
+    const SurfaceValue& v = solution.surfaces[i];
+    const Material& material = model.materials.at(model.surfaces[v.surface].material);
+    rows.push_back({escapeHtml(page.surfaceNames[i]),
+                    swatchHtml(material.reflectance) + escapeHtml(material.name), fixedNumber(v.area_m2, 1),
+                    fixedNumber(luminousY(material.reflectance), 2), illuminanceText(v.illuminanceMean_lx),
+                    illuminanceText(v.illuminanceMin_lx), illuminanceText(v.illuminanceMax_lx),
+                    roundedNumber(luminousY(v.exitanceMean_lm_m2) / std::numbers::pi)});
+  }
+  std::string html = tableHtml("Surfaces",
+                               {{"Surface", "", false},
+                                {"Material", "", false},
+                                {"Area", "m²"},
+                                {"Reflectance", ""},
+                                {"Mean", "lx"},
+                                {"Minimum", "lx"},
+                                {"Maximum", "lx"},
+                                {"Luminance", "cd/m²"}},
+                               rows);
+  if (left > 0) {
+    html += "<p class=\"note\">" + std::to_string(left) +
+            " smaller surfaces are in <code>surfaces.csv</code>.</p>\n";
+  }
+  return html;
+}
+
+std::string roomSections(const Page& page) {
+  std::string html;
+  const Building& building = page.input.building;
+  for (std::size_t r = 0; r < building.rooms.size(); ++r) {
+    const Room& room = building.rooms[r];
+    const auto index = static_cast<std::int32_t>(r);
+    html += sectionOpening("room-" + std::to_string(r), escapeHtml(room.name), "room");
+    html += "<p class=\"lead\">" + fixedNumber(room.floorArea_m2, 1) + " m² of floor, " +
+            fixedNumber(room.volume_m3, 1) + " m³ of air.</p>\n";
+    for (const std::size_t g : gridsOfRoom(building, index)) html += gridHtml(page, g);
+    html += surfaceTable(page, index) + "</section>\n";
+  }
+  const std::vector<std::size_t> outside = gridsOfRoom(building, -1);
+  const std::string surfaces = surfaceTable(page, -1);
+  if (outside.empty() && surfaces.empty()) return html;
+  html += sectionOpening("outside", "Outside");
+  for (const std::size_t g : outside) html += gridHtml(page, g);
+  return html + surfaces + "</section>\n";
+}
+
+std::string assumptionsSection(const Page& page) {
+  const Study& study = page.input.study;
+  std::string html = sectionOpening("assumptions", "Assumptions and diagnoses", "break");
+  html += "<ul class=\"list\">\n";
+  for (const std::string& text : study.assumptions) {
+    html += "<li>" + escapeHtml(withoutFolders(study, text)) + "</li>\n";
+  }
+  html += "<li>The ground reflects " + shortNumber(100.0 * study.groundReflectance) +
+          " % where the model draws none.</li>\n<li>Transmittances are multiplied by " +
+          shortNumber(study.dirtFactor) + " for dirt and by " + shortNumber(study.frameFactor) +
+          " for frames.</li>\n</ul>\n";
+  if (page.input.diagnoses.empty()) {
+    return html + "<p>Nothing in the model needed repair or attention.</p>\n</section>\n";
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const Diagnosis& diagnosis : page.input.diagnoses) {
+    rows.push_back({escapeHtml(diagnosis.code), escapeHtml(withoutFolders(study, diagnosis.message)),
+                    escapeHtml(withoutFolders(study, diagnosis.where)),
+                    fixedNumber(static_cast<double>(diagnosis.count), 0)});
+  }
+  html +=
+      tableHtml("What was noticed",
+                {{"Code", "", false}, {"Diagnosis", "", false}, {"Where", "", false}, {"Times", ""}}, rows);
+  return html + "</section>\n";
+}
+
+std::string materialsSection(const Page& page) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Material& m : page.input.building.model.materials) {
+    std::string transmittance;
+    if (m.glazing) {
+      transmittance =
+          fixedNumber(luminousY(m.transmittance), 2) + (m.transmittanceIsAssumed ? " assumed" : "");
+    }
+    const double exitance_lm_m2 = luminousY(m.exitance_lm_m2);
+    rows.push_back({swatchHtml(m.reflectance) + escapeHtml(m.name), fixedNumber(luminousY(m.reflectance), 2),
+                    transmittance, m.glazing ? std::to_string(m.panes) : "",
+                    exitance_lm_m2 > 0.0 ? roundedNumber(exitance_lm_m2) : ""});
+  }
+  return sectionOpening("materials", "Materials") +
+         tableHtml("What light meets",
+                   {{"Material", "", false},
+                    {"Reflectance", ""},
+                    {"Transmittance", "normal incidence"},
+                    {"Panes", ""},
+                    {"Exitance", "lm/m²"}},
+                   rows) +
+         "</section>\n";
+}
+
+std::string againSection(const Page& page) {
+  const ReportInput& input = page.input;
+  const auto checksum = sha256OfFile(input.study.modelFile);
+  double seconds = 0.0;
+  for (const auto& stage : input.run.stageSeconds) seconds += stage.second;
+  std::string html = sectionOpening("again", "Reproduce");
+  html +=
+      "<p>Clerestory " + escapeHtml(input.run.version) +
+      " computed this report. The <code>study.toml</code> beside this page, with the model, gives the same "
+      "figures again, to the last digit, on any number of threads:</p>\n<pre>clerestory study "
+      "study.toml</pre>\n";
+  if (checksum) {
+    html += "<p class=\"note hash\">" + escapeHtml(modelName(input.study)) + ", SHA-256 <code>" + *checksum +
+            "</code></p>\n";
+  }
+  html += "<p class=\"note\">This run took " + roundedNumber(seconds, 2) + " s on " +
+          std::to_string(input.run.threads) + (input.run.threads == 1 ? " thread" : " threads") + " with " +
+          roundedNumber(static_cast<double>(input.run.linkCacheBytes) / 1048576.0) +
+          " MiB for links and at most " +
+          roundedNumber(static_cast<double>(input.run.peakMemoryBytes) / 1048576.0) + " MiB of memory.</p>\n";
+  html +=
+      "<p>The tables are in full precision in <code>rooms.csv</code>, <code>surfaces.csv</code>, "
+      "<code>sensors.csv</code> and <code>iterations.csv</code>, all settings in "
+      "<code>study.json</code>.</p>\n";
+  return html + "</section>\n";
+}
+
+}  // namespace
+
+std::string pageHtml(const ReportInput& input, const PagePictures& pictures) {
+  const Page page{input, pictures, planScale(input.solution), surfaceRowNames(input)};
+  return headHtml(escapeHtml(modelName(input.study))) + headerHtml(page) + "<main>\n" +
+         viewsHtml(pictures.views) + overviewSection(page) + roomSections(page) + assumptionsSection(page) +
+         accuracySection(page.input) + materialsSection(page) + againSection(page) +
+         "</main>\n<footer>Clerestory " + escapeHtml(input.run.version) + "</footer>\n</body>\n</html>\n";
+}
+
+}  // namespace clerestory

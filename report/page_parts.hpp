@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pieces that the page's sections are made of. Text that is handed in is HTML already: escape names
+// first.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <string>
+#include <vector>
+
+#include <report/report.hpp>
+
+namespace clerestory {
+
+/// A table's column; numbers stand to the right.
+struct Column {
+  std::string title;
+  std::string unit;  ///< may be empty
+  bool isNumber = true;
+};
+
+/// A table with a caption, a header row, and a row header in each first cell.
+std::string tableHtml(const std::string& caption, const std::vector<Column>& columns,
+                      const std::vector<std::vector<std::string>>& rows);
+
+/// One figure with its label, for a list of figures.
+std::string figureHtml(const std::string& label, const std::string& value, const std::string& unit);
+
+std::string sectionOpening(const std::string& id, const std::string& title, const std::string& style = "");
+
+/// A square in the colour of a surface under white light.
+std::string swatchHtml(const glm::dvec3& reflectance);
+
+/// What a light domain is to a reader: the rooms in it, or the outside.
+std::string domainName(const Building& building, std::int32_t domain);
+
+/// The section on accuracy: error estimates, convergence, energy balance.
+std::string accuracySection(const ReportInput& input);
+
+}  // namespace clerestory

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Writes a report: every file into a new folder, which takes its place when all are there.
+#include <report/report.hpp>
+
+#include "escape.hpp"
+#include "folder.hpp"
+#include "image.hpp"
+#include "json.hpp"
+#include "page.hpp"
+#include "plan.hpp"
+#include "tables.hpp"
+
+namespace clerestory {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Writes the views as EXR and PNG; gives the PNGs' bytes for the page.
+std::vector<PageView> writeViews(const fs::path& folder, const ReportInput& input) {
+  std::vector<std::string> names;
+  for (std::size_t v = 0; v < input.solution.views.size(); ++v) names.push_back(input.study.views.at(v).name);
+  const std::vector<std::string> files = safeFileNames(names);
+  std::vector<PageView> pictures;
+  for (std::size_t v = 0; v < files.size(); ++v) {
+    const LuminanceImage& image = input.solution.views[v];
+    if (image.width <= 0 || image.height <= 0) continue;
+    const double scale = exposureScale(image, input.study.views[v].exposure_ev);
+    const std::string stem = "view-" + files[v];
+    writeExr(folder / (stem + ".exr"), image, scale);
+    writePng(folder / (stem + ".png"), displayImage(image, scale));
+    pictures.push_back(
+        {names[v], stem, readFile(folder / (stem + ".png")), 1.0 / scale, image.width, image.height});
+  }
+  return pictures;
+}
+
+/// Writes the plans; gives the bytes of those that have too many sensors to be drawn in the page one by one.
+std::vector<std::string> writePlans(const fs::path& folder, const ReportInput& input) {
+  constexpr std::size_t mostDrawnSensors = 12'000;
+  std::vector<std::string> names;
+  for (const SensorGrid& grid : input.building.grids) names.push_back(grid.name);
+  const std::vector<std::string> files = safeFileNames(names);
+  const PlanScale scale = planScale(input.solution);
+  std::vector<std::string> pictures;
+  for (std::size_t g = 0; g < files.size(); ++g) {
+    const fs::path file = folder / ("plan-" + files[g] + ".png");
+    writePng(file, planPicture(input, g, scale));
+    const bool isDrawn = input.building.grids[g].points.size() <= mostDrawnSensors;
+    pictures.push_back(isDrawn ? std::string() : readFile(file));
+  }
+  return pictures;
+}
+
+/// Writes a study.toml that works from the finished folder: the model seen from there, sensors' points beside
+/// it.
+void writeStudy(const fs::path& partial, const fs::path& folder, const Study& study) {
+  Study again = study;
+  std::error_code failure;
+  const fs::path model = fs::relative(study.modelFile, fs::absolute(folder).lexically_normal(), failure);
+  if (!failure && !model.empty()) again.modelFileAsWritten = model.generic_string();
+  std::vector<std::string> names;
+  for (const GridSettings& grid : again.grids) names.push_back(grid.name);
+  const std::vector<std::string> files = safeFileNames(names);
+  for (std::size_t g = 0; g < again.grids.size(); ++g) {
+    GridSettings& grid = again.grids[g];
+    if (grid.points.empty()) continue;
+    grid.pointsFile = "points-" + files[g] + ".csv";
+    writeFile(partial / grid.pointsFile, pointsCsv(grid.points));
+  }
+  writeFile(partial / "study.toml", studyToml(again));
+}
+
+}  // namespace
+
+void writeReport(const fs::path& folder, const ReportInput& input) {
+  writeBeside(folder, [&](const fs::path& partial) {
+    writeFile(partial / "study.json", studyJson(input));
+    writeFile(partial / "run.json", runJson(input));
+    writeStudy(partial, folder, input.study);
+    writeFile(partial / "sensors.csv", sensorsCsv(input));
+    writeFile(partial / "surfaces.csv", surfacesCsv(input));
+    writeFile(partial / "rooms.csv", roomsCsv(input));
+    writeFile(partial / "iterations.csv", iterationsCsv(input));
+    const PagePictures pictures = {writeViews(partial, input), writePlans(partial, input)};
+    writeFile(partial / "index.html", pageHtml(input, pictures));
+  });
+}
+
+}  // namespace clerestory

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light that a point receives straight from luminous polygons: portals and emitting surfaces.
+#pragma once
+
+#include <functional>
+
+#include "radiosity.hpp"
+
+namespace clerestory {
+
+/// How many samples a luminous polygon gets: `perFormFactor` times its form factor, but `least` in all.
+struct DirectSamples {
+  float perFormFactor;
+  float least;
+};
+
+/// Illuminance of a point and how sure it is.
+template <int K>
+struct DirectLight {
+  Columns<K> illuminance_lx;
+  float deviation_lx = 0.0F;  ///< standard deviation of the quadrature, estimated from its own samples
+  std::uint32_t rays = 0;
+};
+
+/// What a luminous polygon sends towards a receiver from a point on it; black where it is hidden.
+template <int K>
+using Luminance = std::function<Columns<K>(const glm::vec3& onPolygon)>;
+
+/// Illuminance of a point with unit `normal` from a convex planar polygon, whose luminance is asked for at
+/// points. The polygon is parted until each part is small beside its distance; each part's form factor is
+/// exact (Lambert) and its luminance a mean weighed by the kernel, so an unhidden even polygon comes out
+/// exact. Each part gets one sample at least. `key` seeds the points.
+template <int K>
+DirectLight<K> directFromPolygon(const ColumnLayout& layout, const glm::vec3& receiver,
+                                 const glm::vec3& normal, std::span<const glm::vec3> polygon,
+                                 DirectSamples samples, std::uint64_t key, const Luminance<K>& luminance);
+
+/// Illuminance of a point in `domain` from all of its portals.
+template <int K>
+DirectLight<K> directFromPortals(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& receiver,
+                                 const glm::vec3& normal, DirectSamples samples, std::uint64_t key);
+
+/// Illuminance of a point from the emitting sides of its domain.
+template <int K>
+DirectLight<K> directFromEmitters(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& receiver,
+                                  const glm::vec3& normal, DirectSamples samples, std::uint64_t key);
+
+}  // namespace clerestory

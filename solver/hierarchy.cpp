@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Builds the trunk of clusters by the surface-area heuristic, and divides elements across their longer
+// extent.
+#include "hierarchy.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <geometry/sampling.hpp>
+
+namespace clerestory {
+namespace {
+
+struct Box {
+  glm::vec3 low{std::numeric_limits<float>::max()};
+  glm::vec3 high{-std::numeric_limits<float>::max()};
+
+  void add(const glm::vec3& point) {
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+  }
+  void add(const Box& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+  }
+  [[nodiscard]] float halfSurface() const {
+    const glm::vec3 d = high - low;
+    return d.x * d.y + d.y * d.z + d.z * d.x;
+  }
+};
+
+float areaOf(std::span<const glm::vec3> polygon) {
+  glm::vec3 sum(0.0F);
+  for (std::size_t i = 2; i < polygon.size(); ++i) {
+    sum += glm::cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
+  }
+  return 0.5F * glm::length(sum);
+}
+
+glm::vec3 centroidOf(std::span<const glm::vec3> polygon) {
+  glm::vec3 sum(0.0F);
+  float total = 0.0F;
+  for (std::size_t i = 2; i < polygon.size(); ++i) {
+    const float area = glm::length(glm::cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]));
+    sum += area * ((polygon[0] + polygon[i - 1] + polygon[i]) / 3.0F - polygon[0]);
+    total += area;
+  }
+  return total > 0.0F ? polygon[0] + sum / total : polygon[0];
+}
+
+void measure(ElementShape& shape) {
+  shape.centre = centroidOf(shape.corners);
+  shape.radius_m = 0.0F;
+  for (const glm::vec3& corner : shape.corners) {
+    shape.radius_m = std::max(shape.radius_m, glm::length(corner - shape.centre));
+  }
+}
+
+/// Where to part sides[first … last), sorted along the axis of the cheapest cut. Ties keep the canonical
+/// order.
+std::size_t partSides(std::vector<std::uint32_t>& order, std::size_t first, std::size_t last,
+                      const std::vector<Box>& boxes) {
+  const std::size_t count = last - first;
+  std::vector<float> right(count);
+  float bestCost = std::numeric_limits<float>::infinity();
+  std::size_t bestCut = first + count / 2;
+  std::vector<std::uint32_t> best;
+  std::vector<std::uint32_t> sorted(order.begin() + static_cast<std::ptrdiff_t>(first),
+                                    order.begin() + static_cast<std::ptrdiff_t>(last));
+  for (int axis = 0; axis < 3; ++axis) {
+    std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const float x = boxes[a].low[axis] + boxes[a].high[axis];
+      const float y = boxes[b].low[axis] + boxes[b].high[axis];
+      return x != y ? x < y : a < b;
+    });
+    Box box;
+    for (std::size_t i = count; i-- > 0;) {
+      box.add(boxes[sorted[i]]);
+      right[i] = box.halfSurface();
+    }
+    box = {};
+    for (std::size_t i = 1; i < count; ++i) {
+      box.add(boxes[sorted[i - 1]]);
+      const float cost = box.halfSurface() * static_cast<float>(i) + right[i] * static_cast<float>(count - i);
+      if (cost < bestCost) {
+        bestCost = cost;
+        bestCut = first + i;
+        best = sorted;
+      }
+    }
+  }
+  if (!best.empty()) std::copy(best.begin(), best.end(), order.begin() + static_cast<std::ptrdiff_t>(first));
+  return bestCut;
+}
+
+struct TrunkNode {
+  std::size_t first, last;  // of the order of sides
+  NodeIndex firstChild = noNode;
+};
+
+/// The trunk in breadth-first order, down to single sides.
+std::vector<TrunkNode> buildTrunk(std::vector<std::uint32_t>& order, const std::vector<Box>& boxes) {
+  std::vector<TrunkNode> nodes{{0, order.size()}};
+  for (std::size_t node = 0; node < nodes.size(); ++node) {
+    const auto [first, last, child] = nodes[node];
+    if (last - first < 2) continue;
+    const std::size_t cut = partSides(order, first, last, boxes);
+    nodes[node].firstChild = static_cast<NodeIndex>(nodes.size());
+    nodes.push_back({first, cut});
+    nodes.push_back({cut, last});
+  }
+  return nodes;
+}
+
+}  // namespace
+
+Hierarchy::Hierarchy(const Pieces& pieces, std::span<const std::uint32_t> sidesIn, const glm::dvec3& origin,
+                     std::span<const float> weights) {
+  const std::size_t count = sidesIn.size();
+  std::vector<ElementShape> shapes(count);
+  std::vector<Box> boxes(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t piece = sidesIn[i] / 2;
+    const bool back = sidesIn[i] % 2 == 1;
+    ElementShape& shape = shapes[i];
+    for (const std::uint32_t corner : pieces.polygons[piece]) {
+      shape.corners.emplace_back(pieces.points[corner] - origin);
+      boxes[i].add(shape.corners.back());
+    }
+    if (back) std::reverse(shape.corners.begin(), shape.corners.end());
+    shape.area_m2 = static_cast<float>(pieces.area_m2[piece]);
+    shape.weight = weights.empty() ? shape.area_m2 : weights[i];
+    shape.key = (std::uint64_t{sidesIn[i]} + 1U) << 32U | 1U;
+    measure(shape);
+    sides.push_back({sidesIn[i], glm::vec3(back ? -pieces.normal[piece] : pieces.normal[piece]), noNode});
+  }
+
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0U);
+  const std::vector<TrunkNode> trunk = buildTrunk(order, boxes);
+
+  for (const TrunkNode& node : trunk) {
+    const bool isSide = node.firstChild == noNode;
+    if (isSide) {
+      const std::uint32_t own = order[node.first];
+      sides[own].root = addElement(shapes[own], own);
+      continue;
+    }
+    Box box;
+    float area = 0.0F;
+    float weightSum = 0.0F;
+    for (std::size_t s = node.first; s < node.last; ++s) {
+      box.add(boxes[order[s]]);
+      area += shapes[order[s]].area_m2;
+      weightSum += shapes[order[s]].weight;
+    }
+    firstCorner.push_back(static_cast<std::uint32_t>(corners.size()));
+    cornerCount.push_back(2);
+    corners.push_back(box.low);
+    corners.push_back(box.high);
+    key.push_back(mixKey(size()) | std::uint64_t{1} << 63U);
+    centre.push_back(0.5F * (box.low + box.high));
+    radius_m.push_back(0.5F * glm::length(box.high - box.low));
+    area_m2.push_back(area);
+    weight.push_back(weightSum);
+    firstChild.push_back(node.firstChild);
+    treeSide.push_back(noNode);
+    split.emplace_back(0.0F);
+  }
+  trunkSize_ = size();
+  crossSection_m2.resize(trunkSize_);
+  for (std::size_t node = trunkSize_; node-- > 0;) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      const NodeIndex child = firstChild[node];
+      crossSection_m2[node][k] = treeSide[node] == noNode
+                                     ? crossSection_m2[child][k] + crossSection_m2[child + 1][k]
+                                     : area_m2[node] * alongDirection(sides[treeSide[node]].normal, k);
+    }
+  }
+}
+
+NodeIndex Hierarchy::addElement(const ElementShape& shape, std::uint32_t treeSideIndex) {
+  const auto node = static_cast<NodeIndex>(size());
+  centre.push_back(shape.centre);
+  radius_m.push_back(shape.radius_m);
+  area_m2.push_back(shape.area_m2);
+  weight.push_back(shape.weight);
+  firstChild.push_back(noNode);
+  treeSide.push_back(treeSideIndex);
+  key.push_back(shape.key);
+  firstCorner.push_back(static_cast<std::uint32_t>(corners.size()));
+  cornerCount.push_back(static_cast<std::uint32_t>(shape.corners.size()));
+  corners.insert(corners.end(), shape.corners.begin(), shape.corners.end());
+  split.emplace_back(0.0F);
+  return node;
+}
+
+ElementShape Hierarchy::shape(NodeIndex element) const {
+  const auto own = polygon(element);
+  return {{own.begin(), own.end()}, centre[element], radius_m[element],
+          area_m2[element],         weight[element], key[element]};
+}
+
+NodeIndex Hierarchy::divide(NodeIndex parent, const ElementShape& first, const ElementShape& second,
+                            const glm::vec4& plane) {
+  const NodeIndex child = addElement(first, treeSide[parent]);
+  addElement(second, treeSide[parent]);
+  firstChild[parent] = child;
+  split[parent] = plane;
+  return child;
+}
+
+NodeIndex Hierarchy::leafAt(NodeIndex node, const glm::vec3& point) const {
+  while (!isLeaf(node)) {
+    const glm::vec4& plane = split[node];
+    node = firstChild[node] + (glm::dot(glm::vec3(plane), point) + plane.w > 0.0F ? 1U : 0U);
+  }
+  return node;
+}
+
+std::size_t Hierarchy::bytes() const {
+  return size() * (sizeof(glm::vec3) + 3 * sizeof(float) + 2 * sizeof(NodeIndex) + sizeof(std::uint64_t) +
+                   2 * sizeof(std::uint32_t) + sizeof(glm::vec4)) +
+         corners.size() * sizeof(glm::vec3);
+}
+
+Halves halve(const ElementShape& element, const glm::vec3& normal) {
+  // The frame of the longest edge; the cut runs across the longer of the two extents.
+  const auto& corners = element.corners;
+  glm::vec3 along(0.0F);
+  float longest = 0.0F;
+  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
+    const glm::vec3 edge = corners[i] - corners[j];
+    const float length = glm::length(edge);
+    if (length > longest * 1.0001F) {  // nearly equal edges: the first, whatever the rounding
+      longest = length;
+      along = edge / length;
+    }
+  }
+  const glm::vec3 across = glm::cross(normal, along);
+  const auto extent = [&](const glm::vec3& axis) {
+    float low = std::numeric_limits<float>::max();
+    float high = -low;
+    for (const glm::vec3& corner : corners) {
+      low = std::min(low, glm::dot(corner, axis));
+      high = std::max(high, glm::dot(corner, axis));
+    }
+    return std::pair(low, high);
+  };
+  const auto [alongLow, alongHigh] = extent(along);
+  const auto [acrossLow, acrossHigh] = extent(across);
+  const bool cutAlong = alongHigh - alongLow >= acrossHigh - acrossLow;
+  const glm::vec3 axis = cutAlong ? along : across;
+  const float middle = cutAlong ? 0.5F * (alongLow + alongHigh) : 0.5F * (acrossLow + acrossHigh);
+
+  Halves halves;
+  halves.plane = glm::vec4(axis, -middle);
+  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
+    const float a = glm::dot(corners[j], axis) - middle;
+    const float b = glm::dot(corners[i], axis) - middle;
+    if (a * b < 0.0F) {
+      const glm::vec3 cut = corners[j] + a / (a - b) * (corners[i] - corners[j]);
+      halves.first.corners.push_back(cut);
+      halves.second.corners.push_back(cut);
+    }
+    if (b <= 0.0F) halves.first.corners.push_back(corners[i]);
+    if (b >= 0.0F) halves.second.corners.push_back(corners[i]);
+  }
+  measure(halves.first);
+  measure(halves.second);
+  const float share = areaOf(halves.first.corners) /
+                      std::max(areaOf(halves.first.corners) + areaOf(halves.second.corners), 1e-30F);
+  halves.first.area_m2 = share * element.area_m2;
+  halves.second.area_m2 = element.area_m2 - halves.first.area_m2;
+  halves.first.weight = share * element.weight;
+  halves.second.weight = element.weight - halves.first.weight;
+  // Below 31 divisions the path is kept bit by bit; deeper ones are far below any element's least size.
+  halves.first.key = (element.key & 0xffffffff00000000U) | ((element.key << 1U) & 0xffffffffU);
+  halves.second.key = halves.first.key | 1U;
+  return halves;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tree of one light domain: clusters over the sides of its pieces, and elements that sides are divided
+// into. It knows geometry only; sums of radiosity run beside it in arrays of the same indices.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <geometry/building.hpp>
+
+namespace clerestory {
+
+using NodeIndex = std::uint32_t;
+inline constexpr NodeIndex noNode = std::numeric_limits<NodeIndex>::max();
+
+/// The six directions that a cluster's light is kept by, and the share of a vector along each.
+inline constexpr glm::vec3 sixDirections[6] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                               {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
+inline float alongDirection(const glm::vec3& vector, std::size_t k) {
+  return std::max(glm::dot(vector, sixDirections[k]), 0.0F);
+}
+
+/// A side of a piece as a tree of elements.
+struct TreeSide {
+  std::uint32_t side;  ///< of the building: 2 × piece, + 1 for the back
+  glm::vec3 normal;    ///< into the domain's air
+  NodeIndex root;
+};
+
+/// A convex planar polygon with what the oracle asks of it.
+struct ElementShape {
+  std::vector<glm::vec3> corners;
+  glm::vec3 centre{0.0F};
+  float radius_m = 0.0F;  ///< of the sphere about the centre that holds it
+  float area_m2 = 0.0F;
+  float weight = 0.0F;    ///< what an error on it counts; adds up over children
+  std::uint64_t key = 1;  ///< stable: from the piece's place in the canonical order and the path of division
+};
+
+/// Nodes in arrays. The trunk (clusters and the sides' roots) comes first, then elements as they are made, so
+/// a child's index is always above its parent's. The two children of a node stand side by side.
+class Hierarchy {
+ public:
+  /// A tree over the given sides; corners are local to `origin`. `weights` (#sides) may be empty: areas.
+  Hierarchy(const Pieces& pieces, std::span<const std::uint32_t> sides, const glm::dvec3& origin,
+            std::span<const float> weights);
+
+  std::vector<glm::vec3> centre;
+  std::vector<float> radius_m;
+  std::vector<float> area_m2;
+  std::vector<float> weight;
+  std::vector<NodeIndex> firstChild;    ///< noNode: none
+  std::vector<std::uint32_t> treeSide;  ///< index into sides; clusters: noNode
+  std::vector<std::uint64_t> key;
+  std::vector<std::uint32_t> firstCorner;  ///< into corners; clusters: bounding box's low and high
+  std::vector<std::uint32_t> cornerCount;
+  std::vector<glm::vec4> split;  ///< divided elements: the plane n·x + d, positive on the second child's side
+  std::vector<glm::vec3> corners;
+  std::vector<TreeSide> sides;
+  /// Of the trunk's nodes: area seen from +x -x +y -y +z -z were nothing hidden.
+  std::vector<std::array<float, 6>> crossSection_m2;
+
+  [[nodiscard]] std::size_t size() const { return centre.size(); }
+  /// Nodes of the trunk: all clusters are among the first so many.
+  [[nodiscard]] std::size_t trunkSize() const { return trunkSize_; }
+  [[nodiscard]] bool isCluster(NodeIndex node) const { return treeSide[node] == noNode; }
+  [[nodiscard]] bool isLeaf(NodeIndex node) const { return firstChild[node] == noNode; }
+  [[nodiscard]] std::span<const glm::vec3> polygon(NodeIndex element) const {
+    return std::span(corners).subspan(firstCorner[element], cornerCount[element]);
+  }
+  [[nodiscard]] const glm::vec3& normal(NodeIndex element) const { return sides[treeSide[element]].normal; }
+  [[nodiscard]] ElementShape shape(NodeIndex element) const;
+
+  /// Gives the leaf `parent` two children and returns the first. Their weights come with them.
+  NodeIndex divide(NodeIndex parent, const ElementShape& first, const ElementShape& second,
+                   const glm::vec4& plane);
+
+  /// The leaf of a side's tree that holds a point of the side.
+  [[nodiscard]] NodeIndex leafAt(NodeIndex sideRoot, const glm::vec3& point) const;
+
+  /// Bytes that nodes take, without the values that run over them.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  NodeIndex addElement(const ElementShape& shape, std::uint32_t treeSide);
+  std::size_t trunkSize_ = 0;
+};
+
+/// The two halves of an element, cut across its longer extent; their areas and weights add up to its own.
+struct Halves {
+  ElementShape first, second;
+  glm::vec4 plane;
+};
+Halves halve(const ElementShape& element, const glm::vec3& normal);
+
+}  // namespace clerestory

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The result of a study: illuminance at sensors and on surfaces, rooms' figures, statistics of the solver.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <geometry/building.hpp>
+
+namespace clerestory {
+
+/// Illuminance of a sensor in its parts. direct + reflected = sky + sun + electric = illuminance.
+struct SensorValue {
+  double illuminance_lx = 0.0;
+  double direct_lx = 0.0, reflected_lx = 0.0;
+  double sky_lx = 0.0, sun_lx = 0.0, electric_lx = 0.0;
+  double error_lx = 0.0;  ///< 95 % bound on the numerical error
+};
+
+struct GridValues {
+  std::vector<SensorValue> sensors;  ///< in the order of the SensorGrid's points
+};
+
+/// One row of surfaces.csv: one surface in one room (or outside).
+struct SurfaceValue {
+  std::uint32_t surface;   ///< index into CleanModel::surfaces
+  std::int32_t room = -1;  ///< -1: outside any room
+  double area_m2 = 0.0;
+  double illuminanceMean_lx = 0.0, illuminanceMin_lx = 0.0, illuminanceMax_lx = 0.0;
+  glm::dvec3 exitanceMean_lm_m2{0.0};  ///< linear Rec.709
+  double error_lx = 0.0;
+  std::uint32_t elements = 0;
+};
+
+/// One row of iterations.csv; the columns are those of the paper's Tables 1 and 2.
+struct IterationStatistics {
+  std::int32_t domain = 0;
+  int iteration = 0;
+  std::uint64_t linksRequired = 0, linksCached = 0, linksReused = 0, visibilityTests = 0;
+  double unshotPower_lm = 0.0;
+  std::uint64_t elements = 0;
+  double seconds = 0.0;
+};
+
+/// Where the light of a domain went, in lumens; emitted = absorbed + escaped but for numerical error.
+struct EnergyBalance {
+  std::int32_t domain = 0;
+  double emitted_lm = 0.0, absorbed_lm = 0.0, escaped_lm = 0.0;
+  double unscaledDefect =
+      0.0;  ///< share of all power shot that the links missed or overdid, before it is mended
+};
+
+/// A picture in luminance.
+struct LuminanceImage {
+  int width = 0, height = 0;
+  std::vector<glm::vec3> pixels_cd_m2;  ///< rows from the top, linear Rec.709
+};
+
+struct Solution {
+  std::vector<GridValues> grids;  ///< in the order of Building::grids
+  std::vector<SurfaceValue> surfaces;
+  std::vector<IterationStatistics> iterations;
+  std::vector<EnergyBalance> balances;
+  std::vector<LuminanceImage> views;  ///< in the order of Study::views; empty without pictures
+  std::uint64_t elements = 0;
+  int columns = 1;  ///< radiosity values per element
+  bool grey = true;
+  std::size_t hierarchyBytes = 0;
+  std::vector<Diagnosis> diagnoses;
+};
+
+/// What shapes a solve beside the study. Results do not depend on threads and linkCacheBytes.
+struct SolveOptions {
+  int threads = 0;  ///< 0: all
+  std::size_t linkCacheBytes = std::size_t{16} << 20;
+  std::size_t memoryBytes = std::size_t{4} << 30;
+  bool pictures = true;
+  /// Called now and then from the calling thread with what is being done and the fraction done, [0, 1].
+  std::function<void(const std::string& stage, double fraction)> progress;
+};
+
+/// Solves the light of a building. Throws InputError where the study cannot be solved.
+Solution solve(const Building& building, const Study& study, const SolveOptions& options);
+
+}  // namespace clerestory

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A solved domain, and light seen along rays: in it, and from it through its portals to the outside.
+#pragma once
+
+#include <vector>
+
+#include "columns.hpp"
+#include "hierarchy.hpp"
+#include "world.hpp"
+
+namespace clerestory {
+
+/// The light of one domain after the solve.
+template <int K>
+struct Radiosity {
+  Hierarchy tree;
+  std::vector<Columns<K>> irradiance_lx;   ///< #nodes; leaves hold all light received
+  std::vector<Columns<K>> reflectance;     ///< #sides of the tree
+  std::vector<Columns<K>> exitance_lm_m2;  ///< #sides of the tree: own emission
+  std::vector<std::uint32_t> emitters;     ///< sides of the tree that have some
+
+  [[nodiscard]] Columns<K> reflected(NodeIndex leaf) const {
+    return reflectance[tree.treeSide[leaf]] * irradiance_lx[leaf];
+  }
+};
+
+/// All solved domains and the way from a side to its tree; lookups for rays.
+template <int K>
+class SolvedLight {
+ public:
+  explicit SolvedLight(const World& world)
+      : world_(world),
+        rootOfSide_(2 * world.pieces().size(), noNode),
+        domains_(world.building.domains.size()) {}
+
+  void add(std::int32_t domain, Radiosity<K> radiosity);
+  [[nodiscard]] const Radiosity<K>* of(std::int32_t domain) const {
+    const auto& entry = domains_[static_cast<std::size_t>(domain)];
+    return entry ? &*entry : nullptr;
+  }
+
+  /// Exitance of the side that a ray has met, with or without the surface's own emission; black where
+  /// unsolved.
+  [[nodiscard]] Columns<K> exitance(const RayScene::Hit& hit, const glm::vec3& point,
+                                    bool withEmission) const;
+
+  /// Luminance seen outdoors along a ray that starts outside or on the outer face of a pane. [cd/m²]
+  [[nodiscard]] Columns<K> outsideLuminance(const glm::vec3& from, const glm::vec3& direction) const;
+
+  /// Luminance that reaches `receiver` through a portal's point, after the pane's transmittance. [cd/m²]
+  [[nodiscard]] Columns<K> throughPortal(const Portal& portal, const glm::vec3& receiver,
+                                         const glm::vec3& onPane) const;
+
+  /// Sky and ground where nothing is met. [cd/m²]
+  [[nodiscard]] Columns<K> skyLuminance(const glm::vec3& direction) const;
+
+  const World& world() const { return world_; }
+
+ private:
+  const World& world_;
+  std::vector<NodeIndex> rootOfSide_;
+  std::vector<std::optional<Radiosity<K>>> domains_;
+};
+
+}  // namespace clerestory

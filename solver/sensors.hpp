@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Final gather: what arrives at a point, from portals and emitters directly and from everything else by rays.
+#pragma once
+
+#include <solver/solution.hpp>
+
+#include "direct.hpp"
+#include "radiosity.hpp"
+
+namespace clerestory {
+
+struct GatherSettings {
+  DirectSamples direct{512.0F, 24.0F};  ///< of each portal and emitter
+  std::uint32_t rays = 1024;            ///< over the hemisphere
+};
+
+/// Light that arrives at a point.
+template <int K>
+struct Gathered {
+  Columns<K> direct_lx, reflected_lx;
+  /// Standard deviations of the quadrature, estimated from its own samples.
+  float directDeviation_lx = 0.0F, reflectedDeviation_lx = 0.0F;
+};
+
+/// Light arriving at `point` (local coordinates) with unit `normal` in the air of `domain`.
+template <int K>
+Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& point,
+                   const glm::vec3& normal, const GatherSettings& settings, std::uint64_t key);
+
+/// Luminance along a ray in the air of a domain, glass seen through and mirrored in. [cd/m²]
+/// withDirect: surfaces' own emission and what is seen through portals belong to it.
+template <int K>
+Columns<K> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& from,
+                          const glm::vec3& direction, bool withDirect);
+
+/// Values of a grid's sensors.
+template <int K>
+GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const GatherSettings& settings,
+                     double solverError);
+
+/// The domain of air that a point is in, by what is seen around it; -1 where nothing is.
+std::int32_t domainAt(const World& world, const glm::vec3& point);
+
+}  // namespace clerestory

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The CIE skies: gradation from the zenith to the horizon times an indicatrix about the sun, scaled by
+// cubature.
+//
+// CIE S 011 / ISO 15469:2004, Spatial distribution of daylight: CIE standard general sky.
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <solver/sky.hpp>
+
+namespace clerestory {
+namespace {
+
+using std::numbers::pi;
+
+constexpr int kTraditionalOvercast = 16;
+
+/// CIE S 011, Table 1: gradation a, b and indicatrix c, d, e.
+struct Parameters {
+  double a, b, c, d, e;
+};
+constexpr std::array<Parameters, 15> kTypes = {{{4.0, -0.70, 0.0, -1.0, 0.0},
+                                                {4.0, -0.70, 2.0, -1.5, 0.15},
+                                                {1.1, -0.80, 0.0, -1.0, 0.0},
+                                                {1.1, -0.80, 2.0, -1.5, 0.15},
+                                                {0.0, -1.00, 0.0, -1.0, 0.0},
+                                                {0.0, -1.00, 2.0, -1.5, 0.15},
+                                                {0.0, -1.00, 5.0, -2.5, 0.30},
+                                                {0.0, -1.00, 10.0, -3.0, 0.45},
+                                                {-1.0, -0.55, 2.0, -1.5, 0.15},
+                                                {-1.0, -0.55, 5.0, -2.5, 0.30},
+                                                {-1.0, -0.55, 10.0, -3.0, 0.45},
+                                                {-1.0, -0.32, 10.0, -3.0, 0.45},
+                                                {-1.0, -0.32, 16.0, -3.0, 0.30},
+                                                {-1.0, -0.15, 16.0, -3.0, 0.30},
+                                                {-1.0, -0.15, 24.0, -2.8, 0.15}}};
+
+double gradation(const Parameters& sky, double cosZenith) {
+  return 1.0 + sky.a * std::exp(sky.b / cosZenith);
+}
+
+double indicatrix(const Parameters& sky, double cosToSun) {
+  if (sky.c == 0.0) return 1.0;  // and e with it
+  const double angle = std::acos(std::clamp(cosToSun, -1.0, 1.0));
+  return 1.0 + sky.c * (std::exp(sky.d * angle) - std::exp(sky.d * pi / 2.0)) + sky.e * cosToSun * cosToSun;
+}
+
+/// Abscissae and weights of the Gauss-Legendre rule on [0, 1], by Newton's method on the polynomial.
+template <std::size_t N>
+std::array<std::pair<double, double>, N> gaussLegendre() {
+  std::array<std::pair<double, double>, N> rule;
+  constexpr double n = static_cast<double>(N);
+  for (std::size_t i = 0; i < N; ++i) {
+    double x = std::cos(pi * (static_cast<double>(i) + 0.75) / (n + 0.5)), slope = 1.0;
+    for (int step = 0; step < 8; ++step) {
+      double p = x, before = 1.0;
+      for (std::size_t k = 2; k <= N; ++k) {
+        const double order = static_cast<double>(k);
+        before = std::exchange(p, ((2.0 * order - 1.0) * x * p - (order - 1.0) * before) / order);
+      }
+      slope = n * (x * p - before) / (x * x - 1.0);
+      x -= p / slope;
+    }
+    rule[i] = {0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope)};
+  }
+  return rule;
+}
+
+/// Integral of gradation times indicatrix times cosine over the hemisphere: in panels that end at the sun's
+/// zenith angle and azimuth, where the indicatrix has its cusp.
+double horizontalPerScale(const Parameters& sky, double sunZenith) {
+  static const auto rule = gaussLegendre<96>();
+  double sum = 0.0;
+  const double split = std::min(sunZenith, pi / 2.0);
+  for (const auto& [from, to] : {std::pair{0.0, split}, std::pair{split, pi / 2.0}})
+    for (const auto& [x, weight] : rule) {
+      const double zenith = from + (to - from) * x, cosZenith = std::cos(zenith),
+                   sinZenith = std::sin(zenith);
+      double ring = 0.0;
+      for (const auto& [y, ringWeight] : rule)
+        ring += ringWeight * indicatrix(sky, std::cos(sunZenith) * cosZenith +
+                                                 std::sin(sunZenith) * sinZenith * std::cos(pi * y));
+      sum += weight * (to - from) * cosZenith * sinZenith * gradation(sky, cosZenith) * ring;
+    }
+  return 2.0 * pi * sum;
+}
+
+}  // namespace
+
+glm::dvec3 directionFromAngles(double altitude_deg, double azimuth_deg, double north_deg) {
+  const double altitude = glm::radians(altitude_deg), bearing = glm::radians(north_deg + azimuth_deg);
+  return {std::cos(altitude) * std::sin(bearing), std::cos(altitude) * std::cos(bearing), std::sin(altitude)};
+}
+
+Sky::Sky(int cieType, double diffuseHorizontal_lx, glm::dvec3 towardsSun, double groundReflectance,
+         double extraGroundIlluminance_lx)
+    : horizontal_lx_(diffuseHorizontal_lx),
+      ground_cd_m2_(groundReflectance * (diffuseHorizontal_lx + extraGroundIlluminance_lx) / pi),
+      towardsSun_(towardsSun) {
+  if (cieType < 1 || cieType > kTraditionalOvercast)
+    throw std::invalid_argument("CIE sky type " + std::to_string(cieType) + " is not one of 1 to 16");
+  if (cieType == kTraditionalOvercast) {  // (1 + 2 z) / 3, whose integral is 7 pi / 9
+    linear_ = true;
+    a_ = 2.0F;
+    zenith_cd_m2_ = horizontal_lx_ * (9.0 / (7.0 * pi));
+    scale_cd_m2_ = static_cast<float>(zenith_cd_m2_ / 3.0);
+    return;
+  }
+  const Parameters& sky = kTypes[static_cast<std::size_t>(cieType - 1)];
+  const double sunZenith = std::acos(std::clamp(towardsSun.z, -1.0, 1.0));
+  const double scale = horizontal_lx_ / horizontalPerScale(sky, sunZenith);
+  sunny_ = sky.c != 0.0;
+  a_ = static_cast<float>(sky.a);
+  b_ = static_cast<float>(sky.b);
+  base_ = static_cast<float>(1.0 - sky.c * std::exp(sky.d * pi / 2.0));
+  c_ = static_cast<float>(sky.c);
+  d_ = static_cast<float>(sky.d);
+  e_ = static_cast<float>(sky.e);
+  zenith_cd_m2_ = scale * gradation(sky, 1.0) * indicatrix(sky, towardsSun.z);
+  scale_cd_m2_ = static_cast<float>(scale);
+}
+
+float Sky::luminance_cd_m2(glm::vec3 direction) const {
+  if (direction.z < 0.0F) return static_cast<float>(ground_cd_m2_);
+  if (linear_) return scale_cd_m2_ * (1.0F + a_ * direction.z);
+  float relative = 1.0F;
+  if (a_ != 0.0F) relative += a_ * std::exp(b_ / std::max(direction.z, 1e-6F));
+  if (!sunny_) return scale_cd_m2_ * relative;
+  const float cosToSun = std::clamp(glm::dot(direction, towardsSun_), -1.0F, 1.0F);
+  return scale_cd_m2_ * relative *
+         (base_ + c_ * std::exp(d_ * std::acos(cosToSun)) + e_ * cosToSun * cosToSun);
+}
+
+}  // namespace clerestory

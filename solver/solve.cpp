@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A whole solve in its order: the outside, then each domain behind glass, then sensors, surfaces and views.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <solver/solution.hpp>
+
+#include "outside.hpp"
+#include "parallel.hpp"
+#include "sensors.hpp"
+#include "surfaces.hpp"
+#include "transport.hpp"
+#include "view.hpp"
+
+namespace clerestory {
+namespace {
+
+/// What an asked accuracy sets inside, calibrated on the reference scenes (docs/validation.md).
+struct Tuning {
+  TransportSettings transport;
+  GatherSettings sensors;
+  GatherSettings views;
+  double solverError;  ///< relative, of reflected light that a sensor gathers
+};
+
+Tuning tuningFor(double accuracy, const SolveOptions& options) {
+  const double finer = 0.05 / accuracy;  // 1 at the standard accuracy
+  Tuning tuning;
+  tuning.transport.epsilon = static_cast<float>(2e-5 / (finer * finer));
+  tuning.transport.elementMin_m = static_cast<float>(std::max(0.08 / finer, 0.02));
+  tuning.transport.direct = {static_cast<float>(60.0 * finer), static_cast<float>(3.0 * std::sqrt(finer))};
+  tuning.transport.skyRays = static_cast<std::uint32_t>(256.0 * finer);
+  tuning.transport.endShare = 0.02 * accuracy;
+  tuning.transport.memoryBytes = options.memoryBytes;
+  tuning.sensors.direct = {static_cast<float>(512.0 * finer), static_cast<float>(24.0 * finer)};
+  tuning.sensors.rays =
+      static_cast<std::uint32_t>(std::clamp(1024.0 * finer * std::sqrt(finer), 256.0, 65536.0));
+  tuning.views = {{96.0F, 2.0F}, 64};
+  tuning.solverError = 0.3 * accuracy;
+  return tuning;
+}
+
+std::vector<std::uint32_t> sidesOf(const Building& building, std::int32_t domain) {
+  std::vector<std::uint32_t> sides;
+  for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
+    if (building.sideDomain[side] == domain && !building.innerGlass[side / 2]) sides.push_back(side);
+  }
+  return sides;
+}
+
+/// Domains that somebody asks about: rooms, and air that holds a sensor or an eye. Others (a lit hollow in a
+/// ceiling) send nothing anywhere. The outside lights the rest, so it is always among them.
+std::set<std::int32_t> askedDomains(const World& world, const Study& study) {
+  std::set<std::int32_t> asked{0};
+  for (const Room& room : world.building.rooms) asked.insert(room.domain);
+  for (const SensorGrid& grid : world.building.grids) {
+    if (grid.room >= 0) continue;
+    for (const glm::dvec3& point : grid.points) asked.insert(domainAt(world, world.local(point)));
+  }
+  for (const ViewSettings& view : study.views) asked.insert(domainAt(world, world.local(view.eye_m)));
+  return asked;
+}
+
+void report(const SolveOptions& options, const std::string& stage, double fraction) {
+  if (options.progress) options.progress(stage, fraction);
+}
+
+template <int K>
+void solveDomains(const World& world, const Study& study, const SolveOptions& options, const Tuning& tuning,
+                  SolvedLight<K>& light, Solution& solution) {
+  const auto count = static_cast<std::int32_t>(world.building.domains.size());
+  const std::set<std::int32_t> asked = askedDomains(world, study);
+  for (std::int32_t domain = 0; domain < count; ++domain) {
+    const Domain& air = world.building.domains[static_cast<std::size_t>(domain)];
+    const std::vector<std::uint32_t> sides = sidesOf(world.building, domain);
+    if (!air.lit || sides.empty() || !asked.contains(domain)) continue;
+    report(options, "light", static_cast<double>(domain) / count);
+    Hierarchy tree = air.open ? outsideTree(world, study, domain, sides)
+                              : Hierarchy(world.pieces(), sides, world.rays.origin(), {});
+    LinkCache cache(options.linkCacheBytes);
+    Shooting<K> shooting(light, domain, std::move(tree), tuning.transport, cache);
+    shooting.run();
+    solution.iterations.insert(solution.iterations.end(), shooting.statistics.begin(),
+                               shooting.statistics.end());
+    if (!air.open) solution.balances.push_back(shooting.balance);
+    for (Diagnosis& diagnosis : shooting.diagnoses) addDiagnosis(solution.diagnoses, std::move(diagnosis));
+    Radiosity<K> radiosity = shooting.takeRadiosity();
+    solution.elements += shooting.statistics.empty() ? 0 : shooting.statistics.back().elements;
+    solution.hierarchyBytes += radiosity.tree.bytes() + radiosity.tree.size() * sizeof(Columns<K>);
+    light.add(domain, std::move(radiosity));
+  }
+}
+
+template <int K>
+Solution solveColumns(const World& world, const Study& study, const SolveOptions& options) {
+  const Tuning tuning = tuningFor(study.accuracy, options);
+  Solution solution;
+  solution.columns = world.layout.used();
+  solution.grey = world.layout.grey;
+  SolvedLight<K> light(world);
+  solveDomains(world, study, options, tuning, light, solution);
+
+  const std::vector<SensorGrid>& grids = world.building.grids;
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    report(options, "sensors", static_cast<double>(i) / static_cast<double>(grids.size()));
+    solution.grids.push_back(senseGrid(light, grids[i], tuning.sensors, tuning.solverError));
+  }
+  solution.surfaces = measureSurfaces(light, tuning.solverError);
+  if (options.pictures) {
+    for (std::size_t i = 0; i < study.views.size(); ++i) {
+      report(options, "pictures", static_cast<double>(i) / static_cast<double>(study.views.size()));
+      solution.views.push_back(renderView(light, study.views[i], tuning.views));
+    }
+  }
+  return solution;
+}
+
+}  // namespace
+
+Solution solve(const Building& building, const Study& study, const SolveOptions& options) {
+  const World world(building, study);
+  Solution solution;
+  withThreads(options.threads, [&] {
+    const int used = world.layout.used();
+    if (used <= 1) {
+      solution = solveColumns<1>(world, study, options);
+    } else if (used <= 2) {
+      solution = solveColumns<2>(world, study, options);
+    } else if (used <= 4) {
+      solution = solveColumns<4>(world, study, options);
+    } else {
+      solution = solveColumns<8>(world, study, options);
+    }
+  });
+  return solution;
+}
+
+}  // namespace clerestory

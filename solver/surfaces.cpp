@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Adds elements up to surfaces.
+#include "surfaces.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+namespace clerestory {
+namespace {
+
+std::int32_t roomOfDomain(const Building& building, std::int32_t domain) {
+  for (std::size_t i = 0; i < building.rooms.size(); ++i) {
+    if (building.rooms[i].domain == domain) return static_cast<std::int32_t>(i);
+  }
+  return -1;
+}
+
+}  // namespace
+
+template <int K>
+std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double solverError) {
+  const World& world = light.world();
+  const Building& building = world.building;
+  std::map<std::pair<std::int32_t, std::uint32_t>, SurfaceValue> rows;
+  for (std::int32_t domain = 0; domain < static_cast<std::int32_t>(building.domains.size()); ++domain) {
+    const Radiosity<K>* radiosity = light.of(domain);
+    if (radiosity == nullptr) continue;
+    const std::int32_t room = roomOfDomain(building, domain);
+    const std::int32_t order = room < 0 ? std::numeric_limits<std::int32_t>::max() : room;
+    const Hierarchy& tree = radiosity->tree;
+    for (NodeIndex node = 0; node < tree.size(); ++node) {
+      if (tree.isCluster(node) || !tree.isLeaf(node)) continue;
+      // Outdoors only what somebody looks at was solved.
+      if (tree.weight[tree.sides[tree.treeSide[node]].root] <= 0.0F) continue;
+      const std::uint32_t piece = tree.sides[tree.treeSide[node]].side / 2;
+      SurfaceValue& row = rows[{order, world.pieces().surface[piece]}];
+      const auto area_m2 = static_cast<double>(tree.area_m2[node]);
+      const double illuminance_lx = luminanceOf(world.layout.totalColour(radiosity->irradiance_lx[node]));
+      if (row.elements == 0) {
+        row.surface = world.pieces().surface[piece];
+        row.room = room;
+        row.illuminanceMin_lx = row.illuminanceMax_lx = illuminance_lx;
+      }
+      ++row.elements;
+      row.area_m2 += area_m2;
+      row.illuminanceMean_lx += area_m2 * illuminance_lx;
+      row.illuminanceMin_lx = std::min(row.illuminanceMin_lx, illuminance_lx);
+      row.illuminanceMax_lx = std::max(row.illuminanceMax_lx, illuminance_lx);
+      row.exitanceMean_lm_m2 +=
+          area_m2 * world.layout.totalColour(radiosity->reflected(node) +
+                                             radiosity->exitance_lm_m2[tree.treeSide[node]]);
+    }
+  }
+  std::vector<SurfaceValue> result;
+  for (auto& [key, row] : rows) {
+    row.illuminanceMean_lx /= row.area_m2;
+    row.exitanceMean_lm_m2 /= row.area_m2;
+    row.error_lx = solverError * row.illuminanceMean_lx;
+    result.push_back(row);
+  }
+  return result;
+}
+
+template std::vector<SurfaceValue> measureSurfaces<1>(const SolvedLight<1>&, double);
+template std::vector<SurfaceValue> measureSurfaces<2>(const SolvedLight<2>&, double);
+template std::vector<SurfaceValue> measureSurfaces<4>(const SolvedLight<4>&, double);
+template std::vector<SurfaceValue> measureSurfaces<8>(const SolvedLight<8>&, double);
+
+}  // namespace clerestory

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Puts the building, the study's sky and its glass into the solver's terms.
+#include "world.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+
+namespace clerestory {
+namespace {
+
+Sky skyOf(const Study& study) {
+  const glm::dvec2 sun_deg = study.sky.sun_deg.value_or(glm::dvec2(90.0, 180.0));
+  return Sky(study.sky.cieType, study.sky.diffuseHorizontal_lx,
+             directionFromAngles(sun_deg.x, sun_deg.y, study.site.north_deg), study.groundReflectance);
+}
+
+}  // namespace
+
+World::World(const Building& buildingIn, const Study& study)
+    : building(buildingIn),
+      rays(buildingIn.model, buildingIn.innerGlass),
+      sky(skyOf(study)),
+      layout(columnsFor(buildingIn, study.sky.diffuseHorizontal_lx > 0.0)),
+      portalFactor_(static_cast<float>(study.dirtFactor * study.frameFactor)) {
+  for (const Material& material : building.model.materials) {
+    glass_.emplace_back();
+    if (material.glazing) glass_.back().emplace(luminanceOf(material.transmittance), material.panes);
+  }
+  firstCorner_.push_back(0);
+  for (std::size_t piece = 0; piece < pieces().size(); ++piece) {
+    for (const std::uint32_t corner : pieces().polygons[piece])
+      corners_.push_back(local(pieces().points[corner]));
+    firstCorner_.push_back(corners_.size());
+  }
+}
+
+glm::dvec3 World::tintOf(std::uint32_t piece) const {
+  const glm::dvec3& transmittance = materialOf(piece).transmittance;
+  const double luminance = luminanceOf(transmittance);
+  return luminance > 0.0 ? transmittance / luminance : glm::dvec3(1.0);
+}
+
+glm::dvec3 World::reflectanceOf(std::uint32_t piece) const {
+  const Material& material = materialOf(piece);
+  return material.glazing ? glm::dvec3(glassOf(piece).hemisphericalReflectance()) : material.reflectance;
+}
+
+float World::innerTransmittance(const glm::vec3& from, const glm::vec3& to) const {
+  if (!rays.hasInnerGlass()) return 1.0F;
+  const glm::vec3 direction = glm::normalize(to - from);
+  float product = 1.0F;
+  for (const std::uint32_t piece : rays.innerGlassBetween(from, to)) {
+    product *= glassOf(piece).transmittance(std::abs(glm::dot(direction, normalOf(2 * piece))));
+  }
+  return product;
+}
+
+float World::visibility(const glm::vec3& from, const glm::vec3& to) const {
+  if (rays.occluded(from, to, RayScene::Barrier::opaqueAndGlass)) return 0.0F;
+  return innerTransmittance(from, to);
+}
+
+}  // namespace clerestory

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What stays the same during a solve: the building in local coordinates, its glass, the sky, the rays.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <geometry/building.hpp>
+#include <geometry/rays.hpp>
+#include <solver/glass.hpp>
+#include <solver/sky.hpp>
+
+#include "columns.hpp"
+
+namespace clerestory {
+
+class World {
+ public:
+  World(const Building& building, const Study& study);
+
+  const Building& building;
+  RayScene rays;
+  Sky sky;
+  ColumnLayout layout;
+
+  [[nodiscard]] const Pieces& pieces() const { return building.model.pieces; }
+  [[nodiscard]] const Material& materialOf(std::uint32_t piece) const {
+    return building.model.materials[pieces().material[piece]];
+  }
+  [[nodiscard]] glm::vec3 local(const glm::dvec3& world) const { return glm::vec3(world - rays.origin()); }
+
+  /// Corners of a piece in local coordinates, counterclockwise from its front.
+  [[nodiscard]] std::span<const glm::vec3> polygon(std::uint32_t piece) const {
+    return std::span(corners_).subspan(firstCorner_[piece], firstCorner_[piece + 1] - firstCorner_[piece]);
+  }
+  [[nodiscard]] glm::vec3 normalOf(std::uint32_t side) const {
+    return glm::vec3(side % 2 == 0 ? pieces().normal[side / 2] : -pieces().normal[side / 2]);
+  }
+  /// Glass of a glazing piece, and the factor on its transmittance by dirt and undrawn frames.
+  [[nodiscard]] const Glass& glassOf(std::uint32_t piece) const { return *glass_[pieces().material[piece]]; }
+  [[nodiscard]] float portalFactor() const { return portalFactor_; }
+  /// Colour of a glazing's transmittance beside its luminance, 1 where it is grey.
+  [[nodiscard]] glm::dvec3 tintOf(std::uint32_t piece) const;
+
+  /// Diffuse reflectance of a side; glass counts with its hemispherical one.
+  [[nodiscard]] glm::dvec3 reflectanceOf(std::uint32_t piece) const;
+  /// Transmittance of the inner glass between two points, 1 without any.
+  [[nodiscard]] float innerTransmittance(const glm::vec3& from, const glm::vec3& to) const;
+  /// 0 where something opaque or domain-bounding stands between, else the inner glass's transmittance.
+  [[nodiscard]] float visibility(const glm::vec3& from, const glm::vec3& to) const;
+
+ private:
+  std::vector<std::optional<Glass>> glass_;  // #materials
+  std::vector<glm::vec3> corners_;
+  std::vector<std::size_t> firstCorner_;
+  float portalFactor_;
+};
+
+}  // namespace clerestory

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Clean-up of single faces, and the canonical result that does not depend on how a model was written.
+#include <gtest/gtest.h>
+
+#include "drawn.hpp"
+
+namespace clerestory {
+namespace {
+
+using namespace drawn;
+
+TEST(Clean, WeldsPointsWithinAMillimetre) {
+  Drawing drawing;
+  drawing.face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  drawing.face({{1.0004, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1.0004, 1, 0}});
+  const CleanModel model = cleanScene(drawing.scene);
+  EXPECT_EQ(model.counts.pointsWelded, 2U);
+  ASSERT_EQ(model.pieces.size(), 1U);
+  EXPECT_DOUBLE_EQ(model.pieces.area_m2[0], 2.0);
+}
+
+TEST(Clean, KeepsPointsFurtherApart) {
+  Drawing drawing;
+  drawing.face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  drawing.face({{1.0012, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1.0012, 1, 0}});
+  const CleanModel model = cleanScene(drawing.scene);
+  EXPECT_EQ(model.counts.pointsWelded, 0U);
+  EXPECT_EQ(model.pieces.size(), 2U);
+}
+
+TEST(Clean, FloatCoordinatesGiveTheBitsOfTheirDecimals) {
+  const Outline exact = {{0.1, 0.2, 3.003}, {7.777, 0.2, 3.003}, {7.777, 5.501, 3.003}, {0.1, 5.501, 3.003}};
+  Drawing decimal;
+  decimal.face(exact);
+  Drawing binary;
+  Outline rounded;
+  for (const glm::dvec3& point : exact) rounded.emplace_back(glm::vec3(point));
+  binary.face(rounded);
+  const CleanModel model = cleanScene(binary.scene);
+  EXPECT_TRUE(samePieces(cleanScene(decimal.scene), model));
+  EXPECT_EQ(model.pieces.points[0], exact[0]);
+}
+
+TEST(Clean, DropsDegenerateFacesAndCorners) {
+  Drawing drawing;
+  drawing.face({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  drawing.face({{0, 0, 1}, {1, 0, 1}, {2, 0, 1}});
+  drawing.face({{0, 0, 2}, {1, 0, 2}, {0, 0, 2.0004}});
+  const CleanModel model = cleanScene(drawing.scene);
+  EXPECT_EQ(model.counts.degenerateFaces, 2U);
+  EXPECT_EQ(countOf(model, "G201"), 2U);
+  ASSERT_EQ(model.pieces.size(), 1U);
+  EXPECT_EQ(model.pieces.polygons[0].size(), 4U);
+}
+
+TEST(Clean, DropsFacesDrawnTwice) {
+  const Outline square = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  Outline back(square.rbegin(), square.rend());
+  Drawing same;
+  same.face(square);
+  same.face(back, 0, 1);
+  EXPECT_EQ(cleanScene(same.scene).pieces.size(), 1U);
+  EXPECT_EQ(cleanScene(same.scene).counts.duplicateFaces, 1U);
+
+  Drawing twoSided;  // another material on its other side
+  twoSided.face(square);
+  twoSided.face(back, 2);
+  EXPECT_EQ(cleanScene(twoSided.scene).pieces.size(), 2U);
+
+  Drawing covered;  // another material on the same side
+  covered.face(square);
+  covered.face(square, 2);
+  const CleanModel model = cleanScene(covered.scene);
+  ASSERT_EQ(model.pieces.size(), 1U);
+  EXPECT_EQ(model.materials[model.pieces.material[0]].name, "plaster");
+  EXPECT_EQ(countOf(model, "G202"), 1U);
+}
+
+TEST(Clean, SplitsWarpedFaces) {
+  Drawing drawing;
+  drawing.face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.01}, {0, 1, 0}});
+  drawing.face({{5, 0, 0}, {6, 0, 0}, {6, 1, 0.0012}, {5, 1, 0}});
+  const CleanModel model = cleanScene(drawing.scene);
+  EXPECT_EQ(model.counts.nonPlanarFaces, 1U);
+  EXPECT_EQ(model.pieces.size(), 3U);
+  EXPECT_EQ(countOf(model, "G203"), 1U);
+}
+
+TEST(Clean, TriangulatedCubeIsTheCube) {
+  Drawing quads;
+  Drawing triangles;
+  std::size_t centre = 0;
+  for (const Outline& side : box({0, 0, 0}, {1, 2, 3})) {
+    quads.face(side);
+    triangles.fan(side, centre++ % 4);
+  }
+  const CleanModel expected = cleanScene(quads.scene);
+  EXPECT_EQ(expected.pieces.size(), 6U);
+  EXPECT_EQ(expected.pieces.points.size(), 8U);
+  EXPECT_DOUBLE_EQ(totalArea_m2(expected), 22.0);
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    EXPECT_TRUE(samePieces(expected, cleanScene(shuffled(triangles.scene, seed))));
+    EXPECT_TRUE(samePieces(expected, cleanScene(shuffled(quads.scene, seed))));
+  }
+}
+
+TEST(Clean, NormalsFollowTheDrawnWinding) {
+  Drawing drawing;
+  for (const Outline& side : box({0, 0, 0}, {1, 1, 1})) drawing.fan(side);
+  const CleanModel model = cleanScene(drawing.scene);
+  for (std::size_t i = 0; i < model.pieces.size(); ++i) {
+    const glm::dvec3 out = model.pieces.points[model.pieces.polygons[i][0]] - glm::dvec3(0.5);
+    EXPECT_GT(glm::dot(out, model.pieces.normal[i]), 0.0);
+  }
+}
+
+/// An office with a reveal, written out by hand: floor, ceiling, walls, a window wall with hole, pane and
+/// sill.
+Drawing office(bool triangles, double turn_rad) {
+  Drawing drawing;
+  drawing.scene.objects = {"floor", "wall", "pane", "reveal"};
+  const auto add = [&](Outline outline, std::uint32_t material, std::uint32_t object, std::size_t centre) {
+    for (glm::dvec3& p : outline) {
+      p = {std::cos(turn_rad) * p.x - std::sin(turn_rad) * p.y,
+           std::sin(turn_rad) * p.x + std::cos(turn_rad) * p.y, p.z};
+    }
+    if (triangles) {
+      drawing.fan(outline, centre, material, object);
+    } else {
+      drawing.face(outline, material, object);
+    }
+  };
+  const auto sides = box({0, 0, 0}, {3.6, 8.2, 2.8});
+  add(sides[0], 0, 0, 1);
+  for (const std::size_t side : {1U, 3U, 4U, 5U}) add(sides[side], 0, 1, side % 4);
+  for (const double y : {0.0, -0.3}) {
+    add(upright(0, 0, 3.6, 0.8, y), 0, 1, 1);
+    add(upright(0, 2.5, 3.6, 2.8, y), 0, 1, 2);
+    add(upright(0, 0.8, 0.4, 2.5, y), 0, 1, 3);
+    add(upright(3.2, 0.8, 3.6, 2.5, y), 0, 1, 0);
+  }
+  add(upright(0.4, 0.8, 3.2, 2.5, -0.15), 1, 2, 0);
+  add({{0.4, -0.3, 0.8}, {3.2, -0.3, 0.8}, {3.2, 0, 0.8}, {0.4, 0, 0.8}}, 0, 3, 2);
+  add({{0.4, -0.3, 2.5}, {0.4, 0, 2.5}, {3.2, 0, 2.5}, {3.2, -0.3, 2.5}}, 0, 3, 1);
+  return drawing;
+}
+
+TEST(Clean, ResultIsCanonical) {
+  for (const double turn_rad : {0.0, 0.3, 1.0}) {
+    const CleanModel expected = cleanScene(office(false, turn_rad).scene);
+    // Two window walls of four rectangles, five other faces of the room, the pane and two faces of the
+    // reveal.
+    EXPECT_EQ(expected.pieces.size(), 2U * 4U + 5U + 1U + 2U);
+    EXPECT_EQ(expected.counts.polygons, 2U + 5U + 1U + 2U);
+    ASSERT_EQ(expected.surfaces.size(), 4U);
+    EXPECT_EQ(expected.surfaces[0].name, "floor");
+    EXPECT_TRUE(allConvex(expected));
+    for (unsigned seed = 0; seed < 4; ++seed) {
+      EXPECT_TRUE(samePieces(expected, cleanScene(shuffled(office(false, turn_rad).scene, seed))));
+      EXPECT_TRUE(samePieces(expected, cleanScene(shuffled(office(true, turn_rad).scene, seed))));
+    }
+  }
+}
+
+TEST(Clean, EmptySceneIsEmpty) {
+  const CleanModel model = cleanScene(Scene());
+  EXPECT_EQ(model.pieces.size(), 0U);
+  EXPECT_TRUE(model.surfaces.empty());
+}
+
+}  // namespace
+}  // namespace clerestory

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which air is which, on boxes drawn by hand: closed and open rooms, portals, cut reveals, hollow walls,
+// inner glass.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "../scenes.hpp"
+
+namespace clerestory {
+namespace {
+
+using namespace drawn;
+
+constexpr double exact = 1e-9;  // sums of a few areas that are exact in double but for rounding
+
+// The room of most tests, 4 x 3 x 3 m.
+const glm::dvec3 kLow(0, 0, 0);
+const glm::dvec3 kHigh(4, 3, 3);
+
+glm::dvec3 centreOf(const Building& building, std::uint32_t piece) {
+  const Pieces& pieces = building.model.pieces;
+  glm::dvec3 sum(0.0);
+  for (const std::uint32_t corner : pieces.polygons[piece]) sum += pieces.points[corner];
+  return sum / static_cast<double>(pieces.polygons[piece].size());
+}
+
+// Domains of the sides that look towards `towards` and whose piece's centre satisfies `chosen`.
+template <class Chosen>
+std::set<std::int32_t> domainsOf(const Building& building, const glm::dvec3& towards, Chosen chosen) {
+  std::set<std::int32_t> found;
+  for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
+    const glm::dvec3& normal = building.model.pieces.normal[side / 2];
+    const glm::dvec3 looking = side % 2 == 0 ? normal : -normal;
+    if (glm::dot(looking, towards) > 0.99 && chosen(centreOf(building, side / 2))) {
+      found.insert(building.sideDomain[side]);
+    }
+  }
+  return found;
+}
+
+std::set<std::int32_t> upwardAt(const Building& building, double height_m) {
+  return domainsOf(building, {0, 0, 1}, [&](const glm::dvec3& c) { return std::abs(c.z - height_m) < 1e-6; });
+}
+
+TEST(Domains, ClosedBoxIsOneDomainAndTheOutside) {
+  Drawing drawing;
+  addBox(drawing, kLow, kHigh);
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.domains.size(), 2U);
+  EXPECT_TRUE(building.domains[0].open);
+  EXPECT_TRUE(building.domains[0].lit);
+  EXPECT_FALSE(building.domains[1].open);
+  EXPECT_FALSE(building.domains[1].lit);
+  EXPECT_NEAR(building.domains[0].area_m2, 66.0, exact);
+  EXPECT_NEAR(building.domains[1].area_m2, 66.0, exact);
+  EXPECT_EQ(building.domains[1].escape_m2, 0.0);
+  EXPECT_EQ(building.domains[0].escape_m2, 66.0);  // a convex box sees nothing from outside
+  for (std::size_t piece = 0; piece < building.model.pieces.size(); ++piece) {
+    EXPECT_EQ(building.sideDomain[2 * piece] + building.sideDomain[2 * piece + 1], 1);
+  }
+  EXPECT_TRUE(building.portals.empty());
+}
+
+TEST(Domains, MeasuresOfABoxAreExact) {
+  Drawing drawing;
+  addBox(drawing, {100.0, -50.0, 3.0}, {104.5, -46.8, 5.7});
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 1U);
+  EXPECT_EQ(building.rooms[0].name, "Room 1");
+  // Far from the origin the divergence theorem takes differences of terms some 40 times the volume.
+  EXPECT_NEAR(building.rooms[0].floorArea_m2, 4.5 * 3.2, 1e-8);
+  EXPECT_NEAR(building.rooms[0].volume_m3, 4.5 * 3.2 * 2.7, 1e-7);
+  EXPECT_NEAR(building.rooms[0].floor_m, 3.0, exact);
+}
+
+TEST(Domains, NarrowSlitStaysClosed) {
+  Drawing drawing;
+  addRoomWithHole(drawing, kLow, kHigh, {2.0, 0.5, 2.003, 2.5});
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 1U);
+  EXPECT_FALSE(building.domains[static_cast<std::size_t>(building.rooms[0].domain)].open);
+  EXPECT_EQ(upwardAt(building, 0.0), std::set<std::int32_t>{building.rooms[0].domain});
+}
+
+TEST(Domains, DoorHoleOpensTheRoom) {
+  Drawing drawing;
+  addRoomWithHole(drawing, kLow, kHigh, {1.0, 0.0, 1.8, 2.0});
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.domains.size(), 1U);
+  EXPECT_TRUE(building.domains[0].open);
+  for (const std::int32_t domain : building.sideDomain) EXPECT_EQ(domain, 0);
+  // Its covered floor is a room all the same, and the report says so.
+  ASSERT_EQ(building.rooms.size(), 1U);
+  EXPECT_NEAR(building.rooms[0].floorArea_m2, 12.0, exact);
+  std::size_t told = 0;
+  for (const Diagnosis& diagnosis : building.diagnoses) told += diagnosis.code == "G251" ? 1 : 0;
+  EXPECT_EQ(told, 1U);
+}
+
+TEST(Domains, PaneIsAPortal) {
+  for (const bool turned : {false, true}) {
+    Drawing drawing;
+    addRoomWithHole(drawing, kLow, kHigh, {1.0, 1.0, 3.0, 2.0});
+    Outline pane = upright(1.0, 1.0, 3.0, 2.0);
+    if (turned) std::reverse(pane.begin(), pane.end());
+    drawing.face(pane, glass);
+    const Building building = buildingOf(drawing.scene);
+    ASSERT_EQ(building.portals.size(), 1U);
+    const Portal& portal = building.portals[0];
+    EXPECT_EQ(portal.outside, 0);
+    EXPECT_TRUE(building.domains[0].open);
+    ASSERT_EQ(building.rooms.size(), 1U);
+    EXPECT_EQ(portal.inside, building.rooms[0].domain);
+    EXPECT_TRUE(building.domains[static_cast<std::size_t>(portal.inside)].lit);
+    EXPECT_FALSE(building.innerGlass[portal.piece]);
+    EXPECT_NEAR(building.model.pieces.area_m2[portal.piece], 2.0, exact);
+    // The room lies towards +y.
+    EXPECT_EQ(building.model.pieces.normal[portal.piece].y > 0.0, portal.frontIsInside);
+    EXPECT_EQ(building.sideDomain[2 * portal.piece + (portal.frontIsInside ? 0U : 1U)], portal.inside);
+    EXPECT_EQ(building.sideDomain[2 * portal.piece + (portal.frontIsInside ? 1U : 0U)], portal.outside);
+  }
+}
+
+TEST(Domains, RevealsAreCutAtThePane) {
+  Drawing drawing;
+  const Hole hole{1.0, 1.0, 3.0, 2.0};
+  addRoomWithHole(drawing, kLow, kHigh, hole);
+  // Reveals of a wall 0.3 m thick, each one quad; the glass stands in the middle.
+  const double outer = -0.3;
+  drawing.face({{1, outer, 1}, {3, outer, 1}, {3, 0, 1}, {1, 0, 1}});
+  drawing.face({{1, 0, 2}, {3, 0, 2}, {3, outer, 2}, {1, outer, 2}});
+  drawing.face({{1, outer, 1}, {1, 0, 1}, {1, 0, 2}, {1, outer, 2}});
+  drawing.face({{3, 0, 1}, {3, outer, 1}, {3, outer, 2}, {3, 0, 2}});
+  drawing.face(upright(1, 1, 3, 2, -0.15), glass);
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.portals.size(), 1U);
+  const std::int32_t inside = building.portals[0].inside;
+
+  const Pieces& pieces = building.model.pieces;
+  double outer_m2 = 0.0;
+  double inner_m2 = 0.0;
+  for (std::uint32_t piece = 0; piece < pieces.size(); ++piece) {
+    const glm::dvec3 centre = centreOf(building, piece);
+    if (centre.y > -1e-6 || building.portals[0].piece == piece) continue;
+    // A reveal: no part of it reaches to both sides of the glass.
+    for (const std::uint32_t corner : pieces.polygons[piece]) {
+      EXPECT_GE((pieces.points[corner].y + 0.15) * (centre.y + 0.15), -1e-9);
+    }
+    const bool isOuter = centre.y < -0.15;
+    (isOuter ? outer_m2 : inner_m2) += pieces.area_m2[piece];
+    // The side that looks into the opening is in the air of its half.
+    const glm::dvec3 inwards = glm::dvec3(2, centre.y, 1.5) - centre;
+    const std::uint32_t side = 2 * piece + (glm::dot(inwards, pieces.normal[piece]) > 0.0 ? 0U : 1U);
+    EXPECT_EQ(building.sideDomain[side], isOuter ? 0 : inside) << "at y = " << centre.y;
+  }
+  EXPECT_NEAR(outer_m2, 6.0 * 0.15, exact);
+  EXPECT_NEAR(inner_m2, 6.0 * 0.15, exact);
+}
+
+// A room within an outer shell, 0.2 m of hollow wall between, and something that pokes through.
+Building hollowWalled(const std::vector<std::pair<glm::dvec3, glm::dvec3>>& poking) {
+  Drawing drawing;
+  addBox(drawing, kLow, kHigh);
+  addBox(drawing, kLow - 0.2, kHigh + 0.2);
+  for (const auto& [a, b] : poking) addBox(drawing, a, b, wood, 1);
+  return buildingOf(drawing.scene);
+}
+
+TEST(Domains, WhatPokesIntoAHollowWallJoinsNothing) {
+  const std::pair column{glm::dvec3(1.0, -0.1, -0.1), glm::dvec3(1.3, 0.2, 3.1)};
+  const std::pair skirting{glm::dvec3(-0.05, -0.05, -0.02), glm::dvec3(4.05, 0.02, 0.1)};
+  const std::pair beam{glm::dvec3(-0.1, 1.4, 2.7), glm::dvec3(4.1, 1.6, 2.9)};
+  for (const auto& poking : std::vector<std::vector<std::pair<glm::dvec3, glm::dvec3>>>{
+           {}, {column}, {skirting}, {beam}, {column, skirting, beam}}) {
+    const Building building = hollowWalled(poking);
+    SCOPED_TRACE(std::to_string(poking.size()) + " things poke through");
+    ASSERT_EQ(building.rooms.size(), 1U);
+    const std::int32_t room = building.rooms[0].domain;
+    EXPECT_FALSE(building.domains[static_cast<std::size_t>(room)].open);
+    // The hollow's own floor: the inner side of the outer shell.
+    const std::set<std::int32_t> hollow = upwardAt(building, -0.2);
+    ASSERT_EQ(hollow.size(), 1U);
+    EXPECT_NE(*hollow.begin(), room);
+    // The room's floor is the room's; what the column cuts out of it lies in the column.
+    const std::set<std::int32_t> floors = upwardAt(building, 0.0);
+    EXPECT_TRUE(floors.contains(room));
+    EXPECT_FALSE(floors.contains(*hollow.begin()) || floors.contains(0));
+    EXPECT_FALSE(building.domains[static_cast<std::size_t>(*hollow.begin())].open);
+    EXPECT_EQ(upwardAt(building, 3.2), std::set<std::int32_t>{0});
+  }
+}
+
+TEST(Domains, PaneBetweenClosedRoomsIsInnerGlass) {
+  Drawing drawing;
+  addRoomWithPane(drawing, kLow, kHigh, {1.0, 1.0, 3.0, 2.0});
+  addBox(drawing, {0, -3, 0}, {4, 0, 3}, plaster, 0, {4});  // shares the wall with the pane
+  const Building building = buildingOf(drawing.scene);
+  EXPECT_TRUE(building.portals.empty());
+  std::size_t inner = 0;
+  for (std::uint32_t piece = 0; piece < building.model.pieces.size(); ++piece) {
+    if (!building.innerGlass[piece]) continue;
+    ++inner;
+    EXPECT_EQ(building.sideDomain[2 * piece], building.sideDomain[2 * piece + 1]);
+    EXPECT_TRUE(building.model.materials[building.model.pieces.material[piece]].glazing);
+  }
+  EXPECT_EQ(inner, 1U);
+  // Light goes through it, so both floors are in one domain.
+  const std::set<std::int32_t> floors = upwardAt(building, 0.0);
+  ASSERT_EQ(floors.size(), 1U);
+  EXPECT_FALSE(building.domains[static_cast<std::size_t>(*floors.begin())].open);
+}
+
+void expectTwoRooms(const Building& building) {
+  ASSERT_EQ(building.rooms.size(), 2U);
+  EXPECT_NE(building.rooms[0].domain, building.rooms[1].domain);
+  for (const Room& room : building.rooms) {
+    EXPECT_NEAR(room.floorArea_m2, 12.0, exact);
+    EXPECT_NEAR(room.volume_m3, 36.0, 1e-8);
+  }
+}
+
+TEST(Domains, WallBetweenRoomsPartsThem) {
+  Drawing drawing;
+  addBox(drawing, kLow, kHigh);
+  addBox(drawing, {4, 0, 0}, {8, 3, 3}, plaster, 1);  // the wall at x = 4 is drawn once for each room
+  expectTwoRooms(buildingOf(drawing.scene));
+}
+
+// One slab runs through under the wall, as most models draw it: each room has its own part of it.
+TEST(Domains, FloorThatRunsThroughUnderAWallIsParted) {
+  Drawing drawing;
+  addBox(drawing, kLow, {8, 3, 3});
+  drawing.face({{4, 0, 0}, {4, 3, 0}, {4, 3, 3}, {4, 0, 3}}, wood, 1);
+  expectTwoRooms(buildingOf(drawing.scene));
+}
+
+TEST(Domains, DoNotDependOnTheOrderOfFaces) {
+  Drawing drawing;
+  addRoomWithPane(drawing, kLow, kHigh, {1.0, 1.0, 3.0, 2.0});
+  addBox(drawing, {0.5, 1.0, 0.0}, {1.5, 2.0, 0.9}, wood, 1);
+  const Building first = buildingOf(drawing.scene);
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const Building other = buildingOf(shuffled(drawing.scene, seed));
+    EXPECT_EQ(other.sideDomain, first.sideDomain);
+    ASSERT_EQ(other.portals.size(), first.portals.size());
+    EXPECT_EQ(other.portals[0].piece, first.portals[0].piece);
+    EXPECT_EQ(other.portals[0].frontIsInside, first.portals[0].frontIsInside);
+  }
+}
+
+}  // namespace
+}  // namespace clerestory

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What must not change a result, and what must change it in a known way: mirrors, turns, twice the sky, inner
+// glass.
+#include <optional>
+
+#include "solved.hpp"
+
+namespace clerestory {
+namespace {
+
+using namespace drawn;
+
+// The reference office with a cabinet on its west side, so that it is not its own mirror image.
+Scene officeWithCabinet() {
+  Drawing cabinet;
+  addBox(cabinet, {0.1, 3.0, 0.05}, {0.7, 5.0, 1.9}, wood, 1);
+  Scene scene = testModel("reference/refoffice/refoffice.obj", {});
+  const auto first = static_cast<std::uint32_t>(scene.points.size());
+  scene.points.insert(scene.points.end(), cabinet.scene.points.begin(), cabinet.scene.points.end());
+  scene.materials.push_back({.name = "cabinet", .reflectance = glm::dvec3(0.3)});
+  scene.objects.push_back("cabinet");
+  for (std::size_t face = 0; face < cabinet.scene.faces.size(); ++face) {
+    std::vector<std::uint32_t> corners;
+    for (const std::uint32_t corner : cabinet.scene.faces[face]) corners.push_back(first + corner);
+    scene.faces.add(corners);
+    scene.faceMaterial.push_back(static_cast<std::uint32_t>(scene.materials.size() - 1));
+    scene.faceObject.push_back(static_cast<std::uint32_t>(scene.objects.size() - 1));
+  }
+  return scene;
+}
+
+// Sensors of the reference office's size, 0.4 m apart, but not over the cabinet.
+std::vector<glm::dvec3> officePoints() {
+  std::vector<glm::dvec3> points = pointsOver({0, 0, 0}, {3.6, 8.2, 2.8}, 0.85, 0.4);
+  std::erase_if(points, [](const glm::dvec3& p) { return p.x < 0.8 && p.y > 2.9 && p.y < 5.1; });
+  return points;
+}
+
+template <class Move>
+Solved solvedMoved(Scene scene, std::vector<glm::dvec3> points, Study study, Move move) {
+  for (glm::dvec3& point : scene.points) point = move(point);
+  for (glm::dvec3& point : points) point = move(point);
+  study.grids = {gridOf(points)};
+  return solved(scene, study);
+}
+
+glm::dvec3 stay(const glm::dvec3& p) {
+  return p;
+}
+
+// Elements and samples fall elsewhere in a moved model, so both results carry their numerical errors. Fine
+// accuracy promises 2 % at the 95th percentile, so that two results differ by 2.8 % there; 3 % of RMS and 5 %
+// there are the first honest point. Reached when this was written: RMS 2.2 %, p95 4.4 %, bias 0.6 %, nearly
+// all of it in the direct light from the window.
+void expectSameWithinError(const std::string& what, const Solved& moved, const Solved& original) {
+  const GridErrors errors = measuredErrors(what, moved.sensors_lx(), original.sensors_lx());
+  EXPECT_LT(errors.p95, 0.05);
+  EXPECT_LT(errors.rms, 0.03);
+  EXPECT_LT(std::abs(errors.bias), 0.01);
+}
+
+Study fineStudy() {
+  Study study;
+  study.accuracy = 0.02;
+  return study;
+}
+
+TEST(Symmetry, MirroredOfficeGivesTheMirroredResult) {
+  const Solved original = solvedMoved(officeWithCabinet(), officePoints(), fineStudy(), stay);
+  const Solved mirrored = solvedMoved(officeWithCabinet(), officePoints(), fineStudy(),
+                                      [](const glm::dvec3& p) { return glm::dvec3(3.6 - p.x, p.y, p.z); });
+  expectSameWithinError("mirrored", mirrored, original);
+}
+
+TEST(Symmetry, OvercastSkyLooksTheSameAllRound) {
+  const Solved original = solvedMoved(officeWithCabinet(), officePoints(), fineStudy(), stay);
+  const Solved turned = solvedMoved(officeWithCabinet(), officePoints(), fineStudy(),
+                                    [](const glm::dvec3& p) { return glm::dvec3(-p.y, p.x, p.z); });
+  expectSameWithinError("turned by 90 degrees", turned, original);
+}
+
+TEST(Symmetry, PlaceFarFromTheOriginChangesNothing) {
+  const Solved original = solvedMoved(officeWithCabinet(), officePoints(), {}, stay);
+  const Solved far = solvedMoved(officeWithCabinet(), officePoints(), {}, [](const glm::dvec3& p) {
+    return p + glm::dvec3(4096.0, -8192.0,
+                          512.0);  // moves in steps that doubles of this size still hold to 1e-12 m
+  });
+  expectSameWithinError("far from the origin", far, original);
+}
+
+TEST(Symmetry, TwiceTheSkyIsTwiceTheLight) {
+  Study twice;
+  twice.sky.diffuseHorizontal_lx *= 2.0;
+  const Solved once = solvedMoved(officeWithCabinet(), officePoints(), {}, stay);
+  const Solved bright = solvedMoved(officeWithCabinet(), officePoints(), twice, stay);
+  const std::vector<double> a = once.sensors_lx();
+  const std::vector<double> b = bright.sensors_lx();
+  ASSERT_EQ(a.size(), b.size());
+  // Every bound is relative to the light there is, and a factor of two is exact in float: 1e-5 covers the
+  // tables of the sky, which are scaled in float.
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(b[i], 2.0 * a[i], 1e-5 * b[i]);
+  EXPECT_EQ(once.solution.elements, bright.solution.elements);
+}
+
+// A room 8 m deep with a window to the south, and at half its depth nothing, glass or plaster.
+Solved partedRoom(std::optional<std::uint32_t> partition, double reflectance = 0.5) {
+  Drawing drawing;
+  drawing.scene.materials[plaster].reflectance = glm::dvec3(reflectance);
+  addRoomWithPane(drawing, {0, 0, 0}, {4, 8, 3}, {0.5, 0.8, 3.5, 2.6});
+  if (partition) {
+    const std::uint32_t object = addObject(drawing, "partition");
+    drawing.face(upright(0, 0, 4, 3, 4.0), *partition, object);
+  }
+  Study study;
+  study.grids = {gridOf(pointsOver({0, 4.5, 0}, {4, 8, 3}, 0.85, 0.5))};
+  return solved(drawing.scene, study);
+}
+
+TEST(InnerGlass, PartitionLetsLightThrough) {
+  const Solved open = partedRoom(std::nullopt);
+  const Solved glazed = partedRoom(glass);
+  const std::size_t inner = static_cast<std::size_t>(
+      std::count(glazed.building.innerGlass.begin(), glazed.building.innerGlass.end(), true));
+  EXPECT_EQ(inner, 1U);
+  EXPECT_EQ(glazed.building.portals.size(), 1U);
+  const std::vector<double> without = open.sensors_lx();
+  const std::vector<double> with = glazed.sensors_lx();
+  double ratio = 0.0;
+  for (std::size_t i = 0; i < with.size(); ++i)
+    ratio += with[i] / without[i] / static_cast<double>(with.size());
+  std::cout << "behind the partition: " << ratio << " of the light without it\n";
+  // The glass passes 0.70 at normal incidence and 0.62 of diffuse light; what it throws back into either half
+  // is what the other half would have sent back through the opening, within a per cent.
+  EXPECT_GT(ratio, 0.60);
+  EXPECT_LT(ratio, 0.71);
+}
+
+// In a black room only direct light is left, which meets the glass at 0 to 40 degrees: 0.70 to 0.68 of it
+// pass.
+TEST(InnerGlass, PartitionTransmitsByAngle) {
+  const std::vector<double> without = partedRoom(std::nullopt, 0.0).sensors_lx();
+  const std::vector<double> with = partedRoom(glass, 0.0).sensors_lx();
+  double sumWithout_lx = 0.0;
+  double sumWith_lx = 0.0;
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    sumWithout_lx += without[i];
+    sumWith_lx += with[i];
+  }
+  std::cout << "of direct light " << sumWith_lx / sumWithout_lx << " pass\n";
+  EXPECT_GT(sumWith_lx / sumWithout_lx, 0.68);
+  EXPECT_LT(sumWith_lx / sumWithout_lx, 0.70);
+}
+
+TEST(InnerGlass, WallInItsPlaceDoesNot) {
+  const std::vector<double> behind_lx = partedRoom(plaster).sensors_lx();
+  EXPECT_EQ(*std::max_element(behind_lx.begin(), behind_lx.end()), 0.0);
+}
+
+}  // namespace
+}  // namespace clerestory
