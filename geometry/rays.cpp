@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include <geometry/rays.hpp>
@@ -158,6 +159,43 @@ bool RayScene::occluded(const glm::vec3& from, const glm::vec3& to, Barrier barr
   rtcInitIntersectContext(&context);
   rtcOccluded1(embree_->of(barrier).scene.get(), &context, &ray);
   return ray.tfar < 0.0F;
+}
+
+void RayScene::occluded(std::span<const Segment> segments, Barrier barrier,
+                        std::span<std::uint8_t> blocked) const {
+  constexpr std::size_t width = 8;
+  const RTCScene scene = embree_->of(barrier).scene.get();
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  for (std::size_t first = 0; first < segments.size(); first += width) {
+    const std::size_t count = std::min(width, segments.size() - first);
+    if (count == 1) {
+      blocked[first] = occluded(segments[first].from, segments[first].to, barrier) ? 1 : 0;
+      return;
+    }
+    alignas(32) RTCRay8 rays{};
+    alignas(32) int valid[width] = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::vec3 span = segments[first + i].to - segments[first + i].from;
+      const float length_m = glm::length(span);
+      blocked[first + i] = 0;
+      if (length_m <= 2.0F * rayOffset_m) continue;
+      valid[i] = -1;
+      rays.org_x[i] = segments[first + i].from.x;
+      rays.org_y[i] = segments[first + i].from.y;
+      rays.org_z[i] = segments[first + i].from.z;
+      rays.dir_x[i] = span.x / length_m;
+      rays.dir_y[i] = span.y / length_m;
+      rays.dir_z[i] = span.z / length_m;
+      rays.tnear[i] = rayOffset_m;
+      rays.tfar[i] = length_m - rayOffset_m;
+      rays.mask[i] = ~0U;
+    }
+    rtcOccluded8(valid, scene, &context, &rays);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (valid[i] != 0 && rays.tfar[i] < 0.0F) blocked[first + i] = 1;
+    }
+  }
 }
 
 std::vector<std::uint32_t> RayScene::innerGlassBetween(const glm::vec3& from, const glm::vec3& to,

@@ -169,16 +169,42 @@ Hierarchy::Hierarchy(const Pieces& pieces, std::span<const std::uint32_t> sidesI
     firstChild.push_back(node.firstChild);
     treeSide.push_back(noNode);
     split.emplace_back(0.0F);
+    spots.emplace_back();
   }
   trunkSize_ = size();
+  spotSides.resize(trunkSize_);
   crossSection_m2.resize(trunkSize_);
-  for (std::size_t node = trunkSize_; node-- > 0;) {
+  for (NodeIndex node = static_cast<NodeIndex>(trunkSize_); node-- > 0;) {
+    if (isCluster(node)) {
+      drawClusterSpots(node);
+    } else {
+      spotSides[node].fill(treeSide[node]);
+    }
     for (std::size_t k = 0; k < 6; ++k) {
       const NodeIndex child = firstChild[node];
       crossSection_m2[node][k] = treeSide[node] == noNode
                                      ? crossSection_m2[child][k] + crossSection_m2[child + 1][k]
                                      : area_m2[node] * alongDirection(sides[treeSide[node]].normal, k);
     }
+  }
+}
+
+// Drawn from the spots of both children by area, at even steps through the list of them.
+void Hierarchy::drawClusterSpots(NodeIndex cluster) {
+  const NodeIndex first = firstChild[cluster];
+  const float step = 1.0F / static_cast<float>(spotsOfNode);
+  const float firstShare = area_m2[first] / std::max(area_m2[cluster], 1e-30F);
+  const float start = Sequence(key[cluster])(0, 0);
+  for (std::size_t s = 0; s < spotsOfNode; ++s) {
+    const float place = (static_cast<float>(s) + start) * step;
+    const bool fromSecond = place >= firstShare;
+    const float within =
+        fromSecond ? (place - firstShare) / std::max(1.0F - firstShare, 1e-7F) : place / firstShare;
+    const auto spot =
+        std::min(static_cast<std::size_t>(within * static_cast<float>(spotsOfNode)), spotsOfNode - 1);
+    const NodeIndex child = first + (fromSecond ? 1U : 0U);
+    spots[cluster][s] = spots[child][spot];
+    spotSides[cluster][s] = spotSides[child][spot];
   }
 }
 
@@ -195,6 +221,7 @@ NodeIndex Hierarchy::addElement(const ElementShape& shape, std::uint32_t treeSid
   cornerCount.push_back(static_cast<std::uint32_t>(shape.corners.size()));
   corners.insert(corners.end(), shape.corners.begin(), shape.corners.end());
   split.emplace_back(0.0F);
+  spots.push_back(spotsOn(shape.corners, shape.key));
   return node;
 }
 
@@ -223,8 +250,32 @@ NodeIndex Hierarchy::leafAt(NodeIndex node, const glm::vec3& point) const {
 
 std::size_t Hierarchy::bytes() const {
   return size() * (sizeof(glm::vec3) + 3 * sizeof(float) + 2 * sizeof(NodeIndex) + sizeof(std::uint64_t) +
-                   2 * sizeof(std::uint32_t) + sizeof(glm::vec4)) +
+                   2 * sizeof(std::uint32_t) + sizeof(glm::vec4) + sizeof(Spots)) +
+         trunkSize_ * (sizeof(spotSides[0]) + sizeof(crossSection_m2[0])) +
          corners.size() * sizeof(glm::vec3);
+}
+
+Spots spotsOn(std::span<const glm::vec3> polygon, std::uint64_t key) {
+  const auto doubleArea = [&](std::size_t i) {
+    return glm::length(glm::cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]));
+  };
+  float total = 0.0F;
+  for (std::size_t i = 2; i < polygon.size(); ++i) total += doubleArea(i);
+  Spots spots;
+  const Sequence sequence(key);
+  for (std::uint32_t s = 0; s < spotsOfNode; ++s) {
+    float target = sequence(s, 0) * total;
+    std::size_t corner = 2;
+    float share = doubleArea(2);
+    while (corner + 1 < polygon.size() && target >= share) {
+      target -= share;
+      share = doubleArea(++corner);
+    }
+    const float a = share > 0.0F ? std::sqrt(std::min(target / share, 1.0F)) : 0.0F;
+    const float b = sequence(s, 1) * a;
+    spots[s] = polygon[0] + (a - b) * (polygon[corner - 1] - polygon[0]) + b * (polygon[corner] - polygon[0]);
+  }
+  return spots;
 }
 
 Halves halve(const ElementShape& element, const glm::vec3& normal) {

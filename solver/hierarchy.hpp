@@ -34,6 +34,10 @@ struct TreeSide {
   NodeIndex root;
 };
 
+/// Points that stand for a node wherever its visibility is asked for: laid evenly by area, once.
+inline constexpr std::size_t spotsOfNode = 8;
+using Spots = std::array<glm::vec3, spotsOfNode>;
+
 /// A convex planar polygon with what the oracle asks of it.
 struct ElementShape {
   std::vector<glm::vec3> corners;
@@ -64,6 +68,9 @@ class Hierarchy {
   std::vector<glm::vec4> split;  ///< divided elements: the plane n·x + d, positive on the second child's side
   std::vector<glm::vec3> corners;
   std::vector<TreeSide> sides;
+  std::vector<Spots> spots;
+  /// Of the trunk's nodes: the sides that the spots lie on.
+  std::vector<std::array<std::uint32_t, spotsOfNode>> spotSides;
   /// Of the trunk's nodes: area seen from +x -x +y -y +z -z were nothing hidden.
   std::vector<std::array<float, 6>> crossSection_m2;
 
@@ -76,6 +83,9 @@ class Hierarchy {
     return std::span(corners).subspan(firstCorner[element], cornerCount[element]);
   }
   [[nodiscard]] const glm::vec3& normal(NodeIndex element) const { return sides[treeSide[element]].normal; }
+  [[nodiscard]] const glm::vec3& spotNormal(NodeIndex node, std::size_t spot) const {
+    return isCluster(node) ? sides[spotSides[node][spot]].normal : normal(node);
+  }
   [[nodiscard]] ElementShape shape(NodeIndex element) const;
 
   /// Gives the leaf `parent` two children and returns the first. Their weights come with them.
@@ -90,8 +100,12 @@ class Hierarchy {
 
  private:
   NodeIndex addElement(const ElementShape& shape, std::uint32_t treeSide);
+  void drawClusterSpots(NodeIndex cluster);
   std::size_t trunkSize_ = 0;
 };
+
+/// Points laid evenly over a convex polygon (#≥3), seeded by an element's key.
+Spots spotsOn(std::span<const glm::vec3> polygon, std::uint64_t key);
 
 /// The two halves of an element, cut across its longer extent; their areas and weights add up to its own.
 struct Halves {

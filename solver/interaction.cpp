@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One interaction of a shooting step: the oracle, form factor and visibility of a link, and the light it
-// moves.
+// The oracle's estimates, the links' form factors and rays, and how their light is added up.
 #include "interaction.hpp"
 
 #include <glm/geometric.hpp>
@@ -17,23 +16,7 @@ namespace {
 
 constexpr float touching_m = 1e-5F;       // below this a point counts as in a plane
 constexpr float linearDeviation = 0.29F;  // 1 / sqrt(12): rms of a linear ramp, of its whole rise
-constexpr float cornerRise = 1.7F;        // of the rise between points 0.58 of the way to the corners
 constexpr float farApart = 0.1F;          // (radii) / distance below which centres stand for elements
-
-/// Where a receiver is asked for its form factor: Gauss-like points, towards each corner.
-glm::vec3 quadraturePoint(const ElementShape& shape, std::size_t i) {
-  const float share = shape.corners.size() == 3 ? 0.5F : 0.57735F;
-  return shape.centre + share * (shape.corners[i] - shape.centre);
-}
-
-/// Rays of a link by the share of the domain's light that it could carry at most: independent of the light
-/// itself, so a link computed anew is the one that was cached.
-std::uint32_t raysFor(float share) {
-  if (share < 1e-6F) return 2;
-  if (share < 1e-5F) return 4;
-  if (share < 1e-4F) return 8;
-  return 16;
-}
 
 }  // namespace
 
@@ -42,16 +25,34 @@ Interactions<K>::Interactions(const SolvedLight<K>& light, std::int32_t domain, 
                               const Unshot<K>& unshot, const TransportSettings& settings)
     : light_(light),
       world_(light.world()),
-      domain_(domain),
       tree_(tree),
       unshot_(unshot),
       settings_(settings),
-      totalWeight_(std::max(tree.weight[0], 1e-20F)) {}
+      isOpen_(world_.building.domains[static_cast<std::size_t>(domain)].open),
+      totalWeight_(std::max(tree.weight[0], 1e-20F)) {
+  if (!isOpen_) portals_ = portalsOf(light, domain, settings.portalFluxRays);
+}
 
 template <int K>
-bool Interactions<K>::canDivide(const Element& receiver) const {
+std::vector<Sender> Interactions<K>::sendersOutside() const {
+  if (!world_.layout.sky) return {};
+  if (isOpen_) return {openSky};
+  std::vector<Sender> senders;
+  for (std::uint32_t i = 0; i < portals_.size(); ++i) senders.push_back(firstPortal + i);
+  return senders;
+}
+
+template <int K>
+Columns<K> Interactions<K>::portalFlux_lm() const {
+  Columns<K> flux;
+  for (const PortalSender<K>& portal : portals_) flux += portal.flux_lm;
+  return flux;
+}
+
+template <int K>
+bool Interactions<K>::canDivide(const Receiver& receiver) const {
   const bool hasChildren = receiver.node != noNode && !tree_.isLeaf(receiver.node);
-  return hasChildren || (mayGrow && receiver.shape.radius_m > settings_.elementMin_m);
+  return hasChildren || (mayGrow && receiver.radius_m > settings_.elementMin_m);
 }
 
 template <int K>
@@ -70,199 +71,239 @@ bool Interactions<K>::isBehind(NodeIndex node, const glm::vec3& onPlane, const g
 }
 
 template <int K>
-auto Interactions<K>::look(const glm::vec3& centre, float radius_m, NodeIndex sender) const -> Sight {
+bool Interactions<K>::isBehind(const Receiver& receiver, const glm::vec3& onPlane,
+                               const glm::vec3& normal) const {
+  if (receiver.isCluster()) return isBehind(receiver.node, onPlane, normal);
+  return std::all_of(receiver.corners.begin(), receiver.corners.end(), [&](const glm::vec3& corner) {
+    return glm::dot(corner - onPlane, normal) <= touching_m;
+  });
+}
+
+template <int K>
+auto Interactions<K>::look(const Receiver& receiver, NodeIndex sender) const -> Sight {
   const float own = tree_.radius_m[sender];
-  const float distance_m = glm::length(tree_.centre[sender] - centre);
+  const float distance_m = glm::length(tree_.centre[sender] - receiver.centre);
   // The sender's sphere seen from the receiver's nearest point, and its area at the nearest distance.
-  const float sine = own / std::max(distance_m - radius_m, own);
-  const float gap_m = std::max(distance_m - radius_m - own, 1e-4F);
+  const float sine = own / std::max(distance_m - receiver.radius_m, own);
+  const float gap_m = std::max(distance_m - receiver.radius_m - own, 1e-4F);
   const float facing = tree_.isCluster(sender) ? 0.5F : 1.0F;
   const float bound =
       std::min(sine * sine, facing * tree_.area_m2[sender] / (std::numbers::pi_v<float> * gap_m * gap_m));
   return {unshot_.strength[sender], distance_m, bound};
 }
 
+/// A leaf sends evenly and its form factor is exact; a divided element errs by its unevenness, a cluster by
+/// all.
 template <int K>
-auto Interactions<K>::oracleForCluster(NodeIndex receiver, NodeIndex sender, Link& link, Tally& tally) const
-    -> Verdict {
-  if (unshot_.highest[sender] <= 0.0F || tree_.weight[receiver] <= 0.0F) return Verdict::nothing;
+float Interactions<K>::uneven(NodeIndex sender) const {
+  return tree_.isCluster(sender) ? unshot_.strength[sender]
+                                 : unshot_.highest[sender] - unshot_.lowest[sender];
+}
+
+template <int K>
+Verdict Interactions<K>::refineLarger(const Receiver& receiver, NodeIndex sender) const {
+  const bool canRefineSender = !tree_.isLeaf(sender);
+  const bool canRefineReceiver = receiver.isCluster() || canDivide(receiver);
+  if (!canRefineSender && !canRefineReceiver) return Verdict::accept;
+  return canRefineSender && (tree_.radius_m[sender] > receiver.radius_m || !canRefineReceiver)
+             ? Verdict::refineSender
+             : Verdict::refineReceiver;
+}
+
+template <int K>
+Verdict Interactions<K>::judgeOnSight(const Receiver& receiver, NodeIndex sender) const {
+  if (receiver.weight <= 0.0F || (unshot_.highest[sender] <= 0.0F && !linksDark)) return Verdict::nothing;
   const bool senderIsCluster = tree_.isCluster(sender);
+  if (!receiver.isCluster()) {
+    if (tree_.treeSide[sender] == receiver.treeSide) return Verdict::nothing;
+    if (isBehind(sender, receiver.centre, receiver.normal)) return Verdict::nothing;
+  }
   if (!senderIsCluster && isBehind(receiver, tree_.centre[sender], tree_.normal(sender)))
     return Verdict::nothing;
 
-  const float radius_m = tree_.radius_m[receiver];
-  const Sight seen = look(tree_.centre[receiver], radius_m, sender);
-  const float power = seen.strength * seen.bound * tree_.weight[receiver];
-  const float senderRadius_m = tree_.radius_m[sender];
-  const bool canRefineSender = !tree_.isLeaf(sender);
-  const bool apart = seen.distance_m > radius_m + senderRadius_m;
-  const float relative =
-      std::min(1.0F, std::max(radius_m, canRefineSender ? senderRadius_m : 0.0F) / seen.distance_m);
-  if (power > threshold_lm && (!apart || 0.5F * power * relative > threshold_lm)) {
-    return canRefineSender && senderRadius_m > radius_m ? Verdict::refineSender : Verdict::refineReceiver;
-  }
-  link.formFactor = seen.bound;
-  const std::uint64_t key = mixKeys(tree_.key[receiver], tree_.key[sender]);
-  const std::uint32_t count = raysFor(seen.bound * tree_.weight[receiver] / totalWeight_);
-  link.visibility = Link::packVisibility(sampledVisibility(key, count, receiver, nullptr, sender, tally));
-  return Verdict::accept;
+  const Sight seen = look(receiver, sender);
+  if (settings_.oracle == Oracle::transportedPower) return judgePower(receiver, sender, seen);
+  return receiver.isCluster() ? judgeCluster(receiver, sender, seen) : judgeElement(receiver, sender, seen);
+}
+
+// Section 4.1: the amount of transported power decides.
+template <int K>
+Verdict Interactions<K>::judgePower(const Receiver& receiver, NodeIndex sender, const Sight& seen) const {
+  const bool isSmall = seen.strength * seen.bound * receiver.weight <= threshold_lm;
+  return isSmall ? Verdict::accept : refineLarger(receiver, sender);
 }
 
 template <int K>
-auto Interactions<K>::oracleForElement(const Element& receiver, NodeIndex sender,
-                                       std::span<const CachedLink> cached, Link& link, Tally& tally) const
-    -> Verdict {
-  const ElementShape& shape = receiver.shape;
-  const glm::vec3& normal = tree_.sides[receiver.treeSide].normal;
-  if (unshot_.highest[sender] <= 0.0F || shape.weight <= 0.0F) return Verdict::nothing;
-  if (tree_.treeSide[sender] == receiver.treeSide) return Verdict::nothing;
-  if (isBehind(sender, shape.centre, normal)) return Verdict::nothing;
-  const bool senderIsCluster = tree_.isCluster(sender);
-  if (!senderIsCluster) {
-    const glm::vec3& facing = tree_.normal(sender);
-    const bool behind = std::all_of(shape.corners.begin(), shape.corners.end(), [&](const glm::vec3& corner) {
-      return glm::dot(corner - tree_.centre[sender], facing) <= touching_m;
-    });
-    if (behind) return Verdict::nothing;
-  }
-
-  const Sight seen = look(shape.centre, shape.radius_m, sender);
-  const float senderRadius_m = tree_.radius_m[sender];
-  const bool canRefineReceiver = canDivide(receiver);
-  const bool canRefineSender = !tree_.isLeaf(sender);
-  // A leaf sends evenly and its form factor is exact; a divided element errs by its unevenness, a cluster by
-  // all.
-  const float uneven = senderIsCluster ? seen.strength : unshot_.highest[sender] - unshot_.lowest[sender];
-  const float senderShare = canRefineSender ? std::min(1.0F, senderRadius_m / seen.distance_m) : 0.0F;
-  const float receiverShare = std::min(1.0F, shape.radius_m / seen.distance_m);
-  const auto refineLarger = [&] {
-    if (canRefineSender && (senderRadius_m > shape.radius_m || !canRefineReceiver))
-      return Verdict::refineSender;
-    return Verdict::refineReceiver;
-  };
-  const float weight = shape.weight;
-  const bool isSmall = seen.strength * seen.bound * weight <= threshold_lm;
-  if (!isSmall && senderIsCluster && seen.distance_m < shape.radius_m + senderRadius_m) return refineLarger();
-  if (seen.strength * seen.bound * weight > threshold_lm) {
-    const float roughly =
-        seen.bound * weight * linearDeviation *
-        std::max(seen.strength * receiverShare * (canRefineReceiver ? 1.0F : 0.0F), uneven * senderShare);
-    if (roughly > 8.0F * threshold_lm) return refineLarger();
-  }
-
-  const auto found = std::lower_bound(cached.begin(), cached.end(), sender,
-                                      [](const CachedLink& a, NodeIndex b) { return a.sender < b; });
-  if (found != cached.end() && found->sender == sender) {
-    link = found->link;
-    ++tally.reused;
-  } else {
-    link = elementLink(receiver, sender, tally);
-  }
-
-  const float visible = link.visible();
-  const float arriving = link.formFactor * weight;
-  const float receiverError =
-      linearDeviation * seen.strength * arriving * visible * link.spreadOverReceiver();
-  const float shadowError = 0.5F * seen.strength * arriving * std::sqrt(visible * (1.0F - visible));
-  const float senderError =
-      (senderIsCluster ? 0.5F : linearDeviation) * uneven * arriving * visible * senderShare;
-  if (senderError > threshold_lm && senderError >= receiverError) return Verdict::refineSender;
-  if (receiverError > threshold_lm && canRefineReceiver) return Verdict::refineReceiver;
-  if (senderError > threshold_lm) return Verdict::refineSender;
-  if (shadowError > threshold_lm && (canRefineReceiver || canRefineSender)) return refineLarger();
-  return Verdict::accept;
+Verdict Interactions<K>::judgeCluster(const Receiver& receiver, NodeIndex sender, const Sight& seen) const {
+  const float power = seen.strength * seen.bound * receiver.weight;
+  if (power <= threshold_lm) return Verdict::accept;
+  const float senderRadius_m = tree_.isLeaf(sender) ? 0.0F : tree_.radius_m[sender];
+  const bool apart = seen.distance_m > receiver.radius_m + tree_.radius_m[sender];
+  const float relative = std::min(1.0F, std::max(receiver.radius_m, senderRadius_m) / seen.distance_m);
+  if (apart && 0.5F * power * relative <= threshold_lm) return Verdict::accept;
+  return refineLarger(receiver, sender);
 }
 
 template <int K>
-Link Interactions<K>::elementLink(const Element& receiver, NodeIndex sender, Tally& tally) const {
-  const ElementShape& shape = receiver.shape;
-  const glm::vec3& normal = tree_.sides[receiver.treeSide].normal;
-  const Sight seen = look(shape.centre, shape.radius_m, sender);
+Verdict Interactions<K>::judgeElement(const Receiver& receiver, NodeIndex sender, const Sight& seen) const {
+  const float power = seen.strength * seen.bound * receiver.weight;
+  if (power <= threshold_lm) return Verdict::accept;
+  if (tree_.isCluster(sender) && seen.distance_m < receiver.radius_m + tree_.radius_m[sender])
+    return refineLarger(receiver, sender);
+  const float senderShare =
+      tree_.isLeaf(sender) ? 0.0F : std::min(1.0F, tree_.radius_m[sender] / seen.distance_m);
+  const float receiverShare =
+      canDivide(receiver) ? std::min(1.0F, receiver.radius_m / seen.distance_m) : 0.0F;
+  // What is far above the threshold by any measure is not looked at closely.
+  const float roughly = seen.bound * receiver.weight * linearDeviation *
+                        std::max(seen.strength * receiverShare, uneven(sender) * senderShare);
+  return roughly > 8.0F * threshold_lm ? refineLarger(receiver, sender) : Verdict::accept;
+}
+
+template <int K>
+Link Interactions<K>::measureLink(const Receiver& receiver, NodeIndex sender) const {
+  const Sight seen = look(receiver, sender);
   Link link;
-  const float apart = (shape.radius_m + tree_.radius_m[sender]) / std::max(seen.distance_m, 1e-6F);
+  if (receiver.isCluster()) {
+    link.formFactor = seen.bound;
+    return link;
+  }
+  const float apart = (receiver.radius_m + tree_.radius_m[sender]) / std::max(seen.distance_m, 1e-6F);
   if (tree_.isCluster(sender)) {
     link.formFactor = seen.bound;
-    link.spread = Link::packSpread(2.0F * std::min(1.0F, shape.radius_m / seen.distance_m));
+    link.spread = Link::packSpread(2.0F * std::min(1.0F, receiver.radius_m / seen.distance_m));
   } else if (apart < farApart) {
-    const glm::vec3 way = (tree_.centre[sender] - shape.centre) / seen.distance_m;
+    const glm::vec3 way = (tree_.centre[sender] - receiver.centre) / seen.distance_m;
     const float cosines =
-        std::max(glm::dot(way, normal), 0.0F) * std::max(-glm::dot(way, tree_.normal(sender)), 0.0F);
+        std::max(glm::dot(way, receiver.normal), 0.0F) * std::max(-glm::dot(way, tree_.normal(sender)), 0.0F);
     link.formFactor =
         cosines * tree_.area_m2[sender] / (std::numbers::pi_v<float> * seen.distance_m * seen.distance_m);
-    link.spread = Link::packSpread(3.0F * shape.radius_m / seen.distance_m);
+    link.spread = Link::packSpread(3.0F * receiver.radius_m / seen.distance_m);
   } else {
     const auto polygon = tree_.polygon(sender);
     float low = 1.0F;
     float high = 0.0F;
     float sum = 0.0F;
-    for (std::size_t i = 0; i < shape.corners.size(); ++i) {
-      const glm::vec3 point = quadraturePoint(shape, i);
+    const std::size_t count = quadratureCount(receiver.corners);
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::vec3 point = quadraturePoint(receiver.corners, receiver.centre, i);
       const bool inFront = glm::dot(point - tree_.centre[sender], tree_.normal(sender)) > 0.0F;
-      const float own = inFront ? pointToPolygon(point, normal, polygon) : 0.0F;
+      const float own = inFront ? pointToPolygon(point, receiver.normal, polygon) : 0.0F;
       low = std::min(low, own);
       high = std::max(high, own);
       sum += own;
     }
-    link.formFactor = sum / static_cast<float>(shape.corners.size());
+    link.formFactor = sum / static_cast<float>(count);
     link.spread =
         Link::packSpread(link.formFactor > 0.0F ? cornerRise * (high - low) / link.formFactor : 0.0F);
-  }
-  if (link.formFactor > 0.0F) {
-    const std::uint32_t count = raysFor(link.formFactor * shape.weight / totalWeight_);
-    const std::uint64_t key = mixKeys(shape.key, tree_.key[sender]);
-    link.visibility = Link::packVisibility(sampledVisibility(key, count, noNode, &receiver, sender, tally));
   }
   return link;
 }
 
+// By the share of the domain's light that a link could carry at most: independent of the light itself, so a
+// link computed anew is the one that was cached.
 template <int K>
-auto Interactions<K>::spotOn(NodeIndex node, float u, float v, float choice) const -> Spot {
-  while (tree_.isCluster(node)) {
-    const NodeIndex first = tree_.firstChild[node];
-    const float share = tree_.area_m2[first] / tree_.area_m2[node];
-    const bool second = choice >= share;
-    choice = second ? (choice - share) / std::max(1.0F - share, 1e-7F) : choice / std::max(share, 1e-7F);
-    node = first + (second ? 1U : 0U);
-  }
-  return {pointOnPolygon<glm::vec3>(tree_.polygon(node), u, v), tree_.normal(node)};
+std::uint32_t Interactions<K>::raysOf(const Receiver& receiver, const Link& link) const {
+  const float share = link.formFactor * receiver.weight / totalWeight_;
+  if (share <= 0.0F) return 0;
+  if (share < 1e-6F) return 2;
+  if (share < 1e-5F) return 4;
+  if (share < 1e-4F) return 8;
+  return 16;
 }
 
-// The share of the kernel between receiver and sender that is not blocked. Rays end on the contents of
-// clusters.
+// Pairs of the spots of both ends, in an order that their keys choose. Rays end on the contents of clusters.
 template <int K>
-float Interactions<K>::sampledVisibility(std::uint64_t key, std::uint32_t count, NodeIndex receiverNode,
-                                         const Element* receiver, NodeIndex sender, Tally& tally) const {
-  const bool anyCluster = receiver == nullptr || tree_.isCluster(sender);
-  const Sequence fromReceiver(key);
-  const Sequence fromSender(key + 0x51ed);
-  const float receiverRadius_m =
-      receiver != nullptr ? receiver->shape.radius_m : tree_.radius_m[receiverNode];
-  const float nearest_m = 0.25F * std::min(receiverRadius_m, tree_.radius_m[sender]);
-  float seen = 0.0F;
-  float total = 0.0F;
+void Interactions<K>::layRays(const Receiver& receiver, const Candidate& candidate, RayBatch& batch) const {
+  const NodeIndex sender = candidate.sender;
+  const bool anyCluster = receiver.isCluster() || tree_.isCluster(sender);
+  const std::uint32_t count = raysOf(receiver, candidate.link);
+  const std::uint64_t turn = mixKeys(receiver.key, tree_.key[sender]);
+  const std::uint64_t stride = 2U * (turn & 3U) + 1U;
+  const std::uint64_t skip = 2U * ((turn >> 2U) & 3U) + 1U;
+  const float nearest_m = 0.25F * std::min(receiver.radius_m, tree_.radius_m[sender]);
   std::uint32_t cast = 0;
   // Contents that face away from each other say nothing, so clusters may draw four times as often.
-  for (std::uint32_t i = 0; i < (anyCluster ? 4 * count : count) && cast < count; ++i) {
-    Spot from;
-    if (receiver != nullptr) {
-      from.point = pointOnPolygon<glm::vec3>(receiver->shape.corners, fromReceiver(i, 0), fromReceiver(i, 1));
-      from.normal = tree_.sides[receiver->treeSide].normal;
-    } else {
-      from = spotOn(receiverNode, fromReceiver(i, 0), fromReceiver(i, 1), fromReceiver(i, 2));
-    }
-    const Spot to = spotOn(sender, fromSender(i, 0), fromSender(i, 1), fromSender(i, 2));
-    const glm::vec3 way = to.point - from.point;
-    const float leaving = glm::dot(way, from.normal);
-    const float arriving = -glm::dot(way, to.normal);
+  const std::uint32_t most = anyCluster ? 4U * count : count;
+  for (std::uint32_t i = 0; i < most && cast < count; ++i) {
+    const std::size_t here = (i + (turn >> 8U)) % spotsOfNode;
+    const std::size_t there = (i * stride + (i / spotsOfNode) * skip + (turn >> 16U)) % spotsOfNode;
+    const glm::vec3& from = (*receiver.spots)[here];
+    const glm::vec3& to = tree_.spots[sender][there];
+    const glm::vec3& fromNormal =
+        receiver.isCluster() ? tree_.sides[receiver.spotSides[here]].normal : receiver.normal;
+    const glm::vec3 way = to - from;
+    const float leaving = glm::dot(way, fromNormal);
+    const float arriving = -glm::dot(way, tree_.spotNormal(sender, there));
     if (leaving <= 0.0F || arriving <= 0.0F) continue;
     const float squared = std::max(glm::dot(way, way), nearest_m * nearest_m);
-    const float kernel = leaving * arriving / (squared * squared);
     ++cast;
-    total += kernel;
-    seen += kernel * world_.visibility(from.point, to.point);
+    batch.segments.push_back({from, to});
+    batch.kernel.push_back(leaving * arriving / (squared * squared));
   }
-  tally.rays += cast;
-  return total > 0.0F ? std::min(seen / total, 1.0F) : 0.0F;
+}
+
+template <int K>
+void Interactions<K>::castRays(const Receiver& receiver, std::span<Candidate> candidates, RayBatch& batch,
+                               Tally& tally) const {
+  batch.segments.clear();
+  batch.kernel.clear();
+  batch.firstRay.clear();
+  for (const Candidate& candidate : candidates) {
+    batch.firstRay.push_back(static_cast<std::uint32_t>(batch.segments.size()));
+    if (!candidate.isKnown) layRays(receiver, candidate, batch);
+  }
+  batch.firstRay.push_back(static_cast<std::uint32_t>(batch.segments.size()));
+  const std::size_t count = batch.segments.size();
+  tally.rays += count;
+  batch.blocked.resize(count);
+  batch.seen.resize(count);
+  world_.visibility(batch.segments, batch.blocked, batch.seen);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (candidates[i].isKnown) continue;
+    float total = 0.0F;
+    float seen = 0.0F;
+    for (std::size_t ray = batch.firstRay[i]; ray < batch.firstRay[i + 1]; ++ray) {
+      total += batch.kernel[ray];
+      seen += batch.kernel[ray] * batch.seen[ray];
+    }
+    candidates[i].link.visibility = Link::packVisibility(total > 0.0F ? std::min(seen / total, 1.0F) : 0.0F);
+  }
+}
+
+template <int K>
+Verdict Interactions<K>::judgeSeen(const Receiver& receiver, const Candidate& candidate) const {
+  if (receiver.isCluster() || settings_.oracle == Oracle::transportedPower) return Verdict::accept;
+  const NodeIndex sender = candidate.sender;
+  const Link& link = candidate.link;
+  const bool canRefineReceiver = canDivide(receiver);
+  const bool canRefineSender = !tree_.isLeaf(sender);
+  const float visible = link.visible();
+  const float arriving = link.formFactor * receiver.weight;
+  const float power = unshot_.strength[sender] * arriving;
+  const float receiverError = linearDeviation * power * visible * link.spreadOverReceiver();
+  const float shadowError = 0.5F * power * std::sqrt(visible * (1.0F - visible));
+  float senderError = 0.0F;
+  if (canRefineSender) {
+    const float distance_m = glm::length(tree_.centre[sender] - receiver.centre);
+    const float senderShare = std::min(1.0F, tree_.radius_m[sender] / distance_m);
+    senderError = (tree_.isCluster(sender) ? 0.5F : linearDeviation) * uneven(sender) * arriving * visible *
+                  senderShare;
+  }
+  if (senderError > threshold_lm && senderError >= receiverError) return Verdict::refineSender;
+  if (receiverError > threshold_lm && canRefineReceiver) return Verdict::refineReceiver;
+  if (senderError > threshold_lm) return Verdict::refineSender;
+  if (shadowError > threshold_lm) return refineLarger(receiver, sender);
+  return Verdict::accept;
+}
+
+template <int K>
+void Interactions<K>::add(Incoming<K>& incoming, const Receiver& receiver, const Candidate& candidate) const {
+  if (receiver.isCluster()) {
+    addToCluster(incoming.six, receiver, candidate.sender, candidate.link);
+  } else {
+    addToElement(incoming.own, receiver, candidate.sender, candidate.link);
+  }
 }
 
 // A cluster's contents stand for it at its centre; nearer than its own size, or than its contents could fill
@@ -274,25 +315,23 @@ float Interactions<K>::heldSquare(NodeIndex sender, float distance_m, float rece
 }
 
 template <int K>
-void Interactions<K>::addToElement(Received<K>& next, const Element& receiver, NodeIndex sender,
+void Interactions<K>::addToElement(Received<K>& next, const Receiver& receiver, NodeIndex sender,
                                    const Link& link) const {
   const Received<K> even{unshot_.radiosity_lm_m2[sender], 1.0F};
   if (!tree_.isCluster(sender)) {
     next += (link.formFactor * link.visible()) * even;
     return;
   }
-  const ElementShape& shape = receiver.shape;
-  const glm::vec3& normal = tree_.sides[receiver.treeSide].normal;
-  const glm::vec3 way = tree_.centre[sender] - shape.centre;
+  const glm::vec3 way = tree_.centre[sender] - receiver.centre;
   const float distance_m = glm::length(way);
-  if (distance_m < shape.radius_m + tree_.radius_m[sender]) {
-    next += (link.visible() * isotropicShare(sender, shape.radius_m)) * even;
+  if (distance_m < receiver.radius_m + tree_.radius_m[sender]) {
+    next += (link.visible() * isotropicShare(sender, receiver.radius_m)) * even;
     return;
   }
   const glm::vec3 direction = way / distance_m;
-  const float cosine = std::max(glm::dot(direction, normal), 0.0F);
-  const float factor =
-      link.visible() * cosine / (std::numbers::pi_v<float> * heldSquare(sender, distance_m, shape.radius_m));
+  const float cosine = std::max(glm::dot(direction, receiver.normal), 0.0F);
+  const float factor = link.visible() * cosine /
+                       (std::numbers::pi_v<float> * heldSquare(sender, distance_m, receiver.radius_m));
   next += factor * sentAlong(sender, -direction);
 }
 
@@ -316,14 +355,14 @@ float Interactions<K>::isotropicShare(NodeIndex sender, float receiverRadius_m) 
 }
 
 template <int K>
-void Interactions<K>::addToCluster(SixReceived<K>& next, NodeIndex receiver, NodeIndex sender,
+void Interactions<K>::addToCluster(SixReceived<K>& next, const Receiver& receiver, NodeIndex sender,
                                    const Link& link) const {
   const Received<K> even{unshot_.radiosity_lm_m2[sender], 1.0F};
-  const glm::vec3 way = tree_.centre[sender] - tree_.centre[receiver];
+  const glm::vec3 way = tree_.centre[sender] - receiver.centre;
   const float distance_m = glm::length(way);
-  if (distance_m < tree_.radius_m[receiver] + tree_.radius_m[sender]) {
+  if (distance_m < receiver.radius_m + tree_.radius_m[sender]) {
     // From all around; a plane that leans gets up to three directions' worth, half as much again on average.
-    const float share = link.visible() * isotropicShare(sender, tree_.radius_m[receiver]) / 1.5F;
+    const float share = link.visible() * isotropicShare(sender, receiver.radius_m) / 1.5F;
     for (Received<K>& side : next) side += share * even;
     return;
   }
@@ -331,12 +370,12 @@ void Interactions<K>::addToCluster(SixReceived<K>& next, NodeIndex receiver, Nod
     if (glm::dot(way, tree_.normal(sender)) >= 0.0F) return;
     const auto polygon = tree_.polygon(sender);
     for (std::size_t k = 0; k < 6; ++k) {
-      next[k] += (link.visible() * pointToPolygon(tree_.centre[receiver], sixDirections[k], polygon)) * even;
+      next[k] += (link.visible() * pointToPolygon(receiver.centre, sixDirections[k], polygon)) * even;
     }
     return;
   }
   const glm::vec3 direction = way / distance_m;
-  const float square = heldSquare(sender, distance_m, tree_.radius_m[receiver]);
+  const float square = heldSquare(sender, distance_m, receiver.radius_m);
   const Received<K> arriving =  // on a plane square to the way
       (link.visible() / (std::numbers::pi_v<float> * square)) * sentAlong(sender, -direction);
   for (std::size_t k = 0; k < 6; ++k) next[k] += alongDirection(direction, k) * arriving;
@@ -344,93 +383,65 @@ void Interactions<K>::addToCluster(SixReceived<K>& next, NodeIndex receiver, Nod
 
 // Light that no node of the tree sends: from the portals, or from the sky where no glass is between.
 template <int K>
-auto Interactions<K>::receiveFromOutside(const Element& receiver, NodeIndex sender, Columns<K>& next,
-                                         Tally& tally) const -> Verdict {
-  return sender == openSky ? receiveFromSky(receiver, next, tally)
-                           : receiveFromPortals(receiver, next, tally);
+Verdict Interactions<K>::receiveFromOutside(const Receiver& receiver, Sender sender, Incoming<K>& incoming,
+                                            Tally& tally) const {
+  return sender == openSky ? receiveFromSky(receiver, incoming, tally)
+                           : receiveFromPortal(receiver, portals_[sender - firstPortal], incoming, tally);
 }
 
 template <int K>
-auto Interactions<K>::receiveFromSky(const Element& receiver, Columns<K>& next, Tally& tally) const
-    -> Verdict {
-  if (receiver.node != noNode && !tree_.isLeaf(receiver.node)) return Verdict::refineReceiver;
-  const ElementShape& shape = receiver.shape;
-  const glm::vec3& normal = tree_.sides[receiver.treeSide].normal;
-  const Sequence sequence(mixKeys(shape.key, 0x5c1));
+Verdict Interactions<K>::receiveFromSky(const Receiver& receiver, Incoming<K>& incoming, Tally& tally) const {
+  if (receiver.isCluster() || (receiver.node != noNode && !tree_.isLeaf(receiver.node)))
+    return Verdict::refineReceiver;
+  const Sequence sequence(mixKeys(receiver.key, 0x5c1));
   // An element that nothing asks for is lit by a few rays, for the little that it reflects.
-  const std::uint32_t count = shape.weight > 0.0F ? settings_.skyRays : 32;
+  const std::uint32_t count = receiver.weight > 0.0F ? settings_.skyRays : 32;
   Columns<K> sum;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const glm::vec3 from =
-        pointOnPolygon<glm::vec3>(shape.corners, sequence(i, 0), sequence(i, 1)) + rayOffset_m * normal;
-    const glm::vec3 direction = cosineDirection(normal, sequence(i, 2), sequence(i, 3));
+    const glm::vec3 from = pointOnPolygon<glm::vec3>(receiver.corners, sequence(i, 0), sequence(i, 1)) +
+                           rayOffset_m * receiver.normal;
+    const glm::vec3 direction = cosineDirection(receiver.normal, sequence(i, 2), sequence(i, 3));
     const auto hit = world_.rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
     if (!hit)
       sum += world_.innerTransmittance(from, from + 1e4F * direction) * light_.skyLuminance(direction);
   }
   tally.rays += count;
-  next += (std::numbers::pi_v<float> / static_cast<float>(count)) * sum;
+  incoming.own.irradiance_lx += (std::numbers::pi_v<float> / static_cast<float>(count)) * sum;
   return Verdict::accept;
 }
 
-// The points that integrate the light over a receiver also tell its rise, shadows included; what is within
-// their own noise is no rise.
+// A portal is a sender like others, but shows the sky instead of a radiosity. Clusters take it whole where
+// all that it could bring, or what that varies over them, is below what may be missed. Elements are divided
+// while its light rises over them; then as many rays bring it as hold their noise below the threshold.
 template <int K>
-auto Interactions<K>::receiveFromPortals(const Element& receiver, Columns<K>& next, Tally& tally) const
-    -> Verdict {
-  const ElementShape& shape = receiver.shape;
-  const glm::vec3& normal = tree_.sides[receiver.treeSide].normal;
-  const auto lightAt = [&](const glm::vec3& point, std::uint64_t number) {
-    const DirectLight<K> direct = directFromPortals(light_, domain_, point + rayOffset_m * normal, normal,
-                                                    settings_.direct, mixKeys(shape.key, number));
-    tally.rays += direct.rays;
-    return direct;
-  };
-  const bool canRefine = canDivide(receiver);
-  const DirectLight<K> middle = lightAt(shape.centre, 0);
-  if (!canRefine) {
-    next += middle.illuminance_lx;
+Verdict Interactions<K>::receiveFromPortal(const Receiver& receiver, const PortalSender<K>& portal,
+                                           Incoming<K>& incoming, Tally& tally) const {
+  constexpr float deviation = 0.35F;  // of what a pane shows over its area, as a share of the mean
+  constexpr float fewest = 2.0F;
+  constexpr float most = 64.0F;
+  const PortalSight sight = lookAtPortal(light_, portal, receiver);
+  if (sight.light_lx <= 0.0F) return Verdict::nothing;
+  const float power = sight.light_lx * receiver.weight;
+  if (receiver.isCluster()) {
+    if (power > threshold_lm && 0.5F * sight.rise_lx * receiver.weight > threshold_lm)
+      return Verdict::refineReceiver;
+    const auto six = clusterLightFromPortal(light_, portal, tree_, receiver.node, tally.rays);
+    for (std::size_t k = 0; k < 6; ++k) incoming.six[k].irradiance_lx += six[k];
     return Verdict::accept;
   }
-  Columns<K> sum;
-  float low = world_.layout.strength(middle.illuminance_lx);
-  float high = low;
-  float noise = middle.deviation_lx;
-  const std::size_t count = shape.corners.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const DirectLight<K> own = lightAt(quadraturePoint(shape, i), i + 1);
-    const float strength = world_.layout.strength(own.illuminance_lx);
-    low = std::min(low, strength);
-    high = std::max(high, strength);
-    noise = std::max(noise, own.deviation_lx);
-    sum += (1.0F / static_cast<float>(count)) * own.illuminance_lx;
+  if (power > threshold_lm) {
+    const float visible = seenOfPortal(world_, portal, receiver);
+    tally.rays += spotsOfNode;
+    if (visible <= 0.0F) return Verdict::nothing;
+    const float riseError = linearDeviation * sight.rise_lx * receiver.weight * visible;
+    const float shadowError = 0.5F * power * std::sqrt(visible * (1.0F - visible));
+    if (std::max(riseError, shadowError) > threshold_lm && canDivide(receiver))
+      return Verdict::refineReceiver;
   }
-  const float rise = std::max(cornerRise * (high - low) - 2.0F * noise, 0.0F);
-  if (linearDeviation * rise * shape.weight > threshold_lm) return Verdict::refineReceiver;
-  next += sum;
+  const float excess = deviation * power / threshold_lm;
+  const float samples = std::clamp(excess * excess, fewest, most);
+  incoming.own.irradiance_lx += elementLightFromPortal(light_, portal, receiver, sight, samples, tally.rays);
   return Verdict::accept;
-}
-
-// Light that enters by the portals, by many directions over each pane. [lm]
-template <int K>
-Columns<K> Interactions<K>::portalFlux() const {
-  Columns<K> flux;
-  for (const Portal& portal : world_.building.portals) {
-    if (portal.inside != domain_ || !world_.layout.sky) continue;
-    const glm::vec3 outward = world_.normalOf(2 * portal.piece + (portal.frontIsInside ? 1U : 0U));
-    const auto polygon = world_.polygon(portal.piece);
-    const Sequence sequence(mixKeys(0xf10c, portal.piece));
-    const std::uint32_t count = settings_.portalFluxRays;
-    Columns<K> sum;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const glm::vec3 point = pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1));
-      const glm::vec3 direction = cosineDirection(outward, sequence(i, 2), sequence(i, 3));
-      sum += light_.throughPortal(portal, point - 1e-3F * direction, point);
-    }
-    const auto area_m2 = static_cast<float>(world_.pieces().area_m2[portal.piece]);
-    flux += (std::numbers::pi_v<float> * area_m2 / static_cast<float>(count)) * sum;
-  }
-  return flux;
 }
 
 template class Interactions<1>;

@@ -3,23 +3,28 @@
 // moves.
 #pragma once
 
-#include <glm/geometric.hpp>
-
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "direct.hpp"
 #include "linkcache.hpp"
+#include "portals.hpp"
 #include "radiosity.hpp"
+#include "receiver.hpp"
 
 namespace clerestory {
 
+/// What decides whether an interaction is fine enough.
+enum class Oracle {
+  error,            ///< an estimate of the error that it causes
+  transportedPower  ///< a bound on the power that it moves, as in the paper's section 4.1
+};
+
 /// What decides how finely light is transported.
 struct TransportSettings {
+  Oracle oracle = Oracle::error;
   float epsilon = 2e-6F;                ///< share of the domain's first light that one interaction may err by
   float elementMin_m = 0.06F;           ///< elements of a smaller radius are not divided
-  DirectSamples direct{60.0F, 3.0F};    ///< of each portal, at each point of an element that is asked
   std::uint32_t portalFluxRays = 4096;  ///< of each pane, for the power that enters
   std::uint32_t skyRays = 256;          ///< of an element that sees the sky without glass
   double endShare = 1e-3;  ///< unshot light, as a share of the mean irradiance, that ends the steps
@@ -51,7 +56,14 @@ struct Received {
 template <int K>
 using SixReceived = std::array<Received<K>, 6>;
 
-/// The unshot light of a tree's nodes, pulled up to its root, and the scalars that the oracle looks at.
+/// What a receiver collects: an element in `own`, a cluster by direction.
+template <int K>
+struct Incoming {
+  Received<K> own;
+  SixReceived<K> six{};
+};
+
+/// The radiosity that a step sends, pulled up to the root, and the scalars that the oracle looks at.
 template <int K>
 struct Unshot {
   std::vector<Columns<K>> radiosity_lm_m2;       ///< #nodes: means
@@ -66,52 +78,74 @@ struct Unshot {
   }
 };
 
-/// An element as a receiver: a node of the tree or one grown in this step.
-struct Element {
-  ElementShape shape;
-  NodeIndex node = noNode;
-  std::uint32_t grown = noNode;
-  std::uint32_t treeSide;
-};
-
 /// What a task has done, for the statistics.
 struct Tally {
   std::uint64_t links = 0, reused = 0, rays = 0;
 };
 
-/// ORACLE of the paper's TRANSPORT-LIGHT, and what it answers about.
+/// Answers of the oracle.
 enum class Verdict { nothing, accept, refineSender, refineReceiver };
+
+/// An end of an interaction that sends: a node of the tree, the open sky, or a portal of the domain.
+using Sender = std::uint32_t;
+inline constexpr Sender firstPortal = 0x80000000U;
+inline constexpr Sender openSky = 0xfffffffeU;
+
+/// A link that the oracle has not refused on sight; its visibility is to be asked for, or known.
+struct Candidate {
+  NodeIndex sender;
+  Link link;
+  bool isKnown = false;  ///< from the cache
+};
+
+/// The rays of many links to one receiver, cast together; kept by a task between receivers.
+struct RayBatch {
+  std::vector<RayScene::Segment> segments;
+  std::vector<float> kernel, seen;
+  std::vector<std::uint8_t> blocked;
+  std::vector<std::uint32_t> firstRay;  ///< #candidates + 1
+};
 
 /// Interactions within one tree. Reads the tree and its unshot light, writes nothing but what it is handed.
 template <int K>
 class Interactions {
  public:
-  /// Ends of an interaction that send and are no nodes: all portals, or the open sky.
-  static constexpr NodeIndex portals = noNode - 1;
-  static constexpr NodeIndex openSky = noNode - 2;
-
   Interactions(const SolvedLight<K>& light, std::int32_t domain, const Hierarchy& tree,
                const Unshot<K>& unshot, const TransportSettings& settings);
 
-  /// lm that one interaction may err by.
+  /// lm that one interaction may err by, or move.
   float threshold_lm = 0.0F;
   /// Whether receivers may be divided further.
   bool mayGrow = true;
+  /// Whether a sender that is dark as yet gets links too, for a step in which it is not.
+  bool linksDark = false;
 
-  /// Judges an interaction; on `accept`, `link` is what is known of it.
-  Verdict oracleForCluster(NodeIndex receiver, NodeIndex sender, Link& link, Tally& tally) const;
-  Verdict oracleForElement(const Element& receiver, NodeIndex sender, std::span<const CachedLink> cached,
-                           Link& link, Tally& tally) const;
+  [[nodiscard]] bool canDivide(const Receiver& receiver) const;
 
-  /// Adds the light that an accepted link brings to a receiver.
-  void addToElement(Received<K>& next, const Element& receiver, NodeIndex sender, const Link& link) const;
-  void addToCluster(SixReceived<K>& next, NodeIndex receiver, NodeIndex sender, const Link& link) const;
+  /// ORACLE of the paper's TRANSPORT-LIGHT on what is known of two nodes beforehand.
+  [[nodiscard]] Verdict judgeOnSight(const Receiver& receiver, NodeIndex sender) const;
+  /// A link without its visibility.
+  [[nodiscard]] Link measureLink(const Receiver& receiver, NodeIndex sender) const;
+  /// Fills the visibility of those candidates that are not known.
+  void castRays(const Receiver& receiver, std::span<Candidate> candidates, RayBatch& batch,
+                Tally& tally) const;
+  /// ORACLE on what the rays have told.
+  [[nodiscard]] Verdict judgeSeen(const Receiver& receiver, const Candidate& candidate) const;
+  /// Adds the light that an accepted link brings.
+  void add(Incoming<K>& incoming, const Receiver& receiver, const Candidate& candidate) const;
+  /// Power that a link moves, or could were nothing in its way. [lm]
+  [[nodiscard]] float powerOf(const Receiver& receiver, const Candidate& candidate) const {
+    return unshot_.strength[candidate.sender] * candidate.link.formFactor * receiver.weight;
+  }
 
-  /// Light from the portals or the open sky: judged, and on `accept` added at once.
-  Verdict receiveFromOutside(const Element& receiver, NodeIndex sender, Columns<K>& next, Tally& tally) const;
+  /// Light from a portal or the open sky: judged, and on `accept` added at once.
+  Verdict receiveFromOutside(const Receiver& receiver, Sender sender, Incoming<K>& incoming,
+                             Tally& tally) const;
 
-  /// Light that enters by the portals, by many directions over each pane. [lm]
-  [[nodiscard]] Columns<K> portalFlux() const;
+  /// Portals of the domain, or the open sky.
+  [[nodiscard]] std::vector<Sender> sendersOutside() const;
+  /// Light that enters by the portals. [lm]
+  [[nodiscard]] Columns<K> portalFlux_lm() const;
 
  private:
   /// What the oracle sees of a sender.
@@ -120,30 +154,37 @@ class Interactions {
     float distance_m;
     float bound;  ///< of the form factor
   };
-  struct Spot {
-    glm::vec3 point, normal;
-  };
 
   [[nodiscard]] bool isBehind(NodeIndex node, const glm::vec3& onPlane, const glm::vec3& normal) const;
-  [[nodiscard]] bool canDivide(const Element& receiver) const;
-  [[nodiscard]] Sight look(const glm::vec3& centre, float radius_m, NodeIndex sender) const;
-  [[nodiscard]] Link elementLink(const Element& receiver, NodeIndex sender, Tally& tally) const;
-  [[nodiscard]] float sampledVisibility(std::uint64_t key, std::uint32_t count, NodeIndex receiverNode,
-                                        const Element* receiver, NodeIndex sender, Tally& tally) const;
-  [[nodiscard]] Spot spotOn(NodeIndex node, float u, float v, float choice) const;
+  [[nodiscard]] bool isBehind(const Receiver& receiver, const glm::vec3& onPlane,
+                              const glm::vec3& normal) const;
+  [[nodiscard]] Sight look(const Receiver& receiver, NodeIndex sender) const;
+  [[nodiscard]] Verdict refineLarger(const Receiver& receiver, NodeIndex sender) const;
+  [[nodiscard]] Verdict judgePower(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
+  [[nodiscard]] Verdict judgeCluster(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
+  [[nodiscard]] Verdict judgeElement(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
+  [[nodiscard]] std::uint32_t raysOf(const Receiver& receiver, const Link& link) const;
+  void layRays(const Receiver& receiver, const Candidate& candidate, RayBatch& batch) const;
+  [[nodiscard]] float uneven(NodeIndex sender) const;
+
+  void addToElement(Received<K>& next, const Receiver& receiver, NodeIndex sender, const Link& link) const;
+  void addToCluster(SixReceived<K>& next, const Receiver& receiver, NodeIndex sender, const Link& link) const;
   [[nodiscard]] float heldSquare(NodeIndex sender, float distance_m, float receiverRadius_m) const;
   [[nodiscard]] Received<K> sentAlong(NodeIndex cluster, const glm::vec3& direction) const;
   [[nodiscard]] float isotropicShare(NodeIndex sender, float receiverRadius_m) const;
-  Verdict receiveFromSky(const Element& receiver, Columns<K>& next, Tally& tally) const;
-  Verdict receiveFromPortals(const Element& receiver, Columns<K>& next, Tally& tally) const;
+
+  Verdict receiveFromSky(const Receiver& receiver, Incoming<K>& incoming, Tally& tally) const;
+  Verdict receiveFromPortal(const Receiver& receiver, const PortalSender<K>& portal, Incoming<K>& incoming,
+                            Tally& tally) const;
 
   const SolvedLight<K>& light_;
   const World& world_;
-  std::int32_t domain_;
   const Hierarchy& tree_;
   const Unshot<K>& unshot_;
   const TransportSettings& settings_;
+  bool isOpen_;
   float totalWeight_;
+  std::vector<PortalSender<K>> portals_;
 };
 
 }  // namespace clerestory

@@ -41,33 +41,37 @@ static_assert(sizeof(CachedLink) == 16);
 /// handed over between steps. Nothing that is computed depends on what the cache holds.
 class LinkCache {
  public:
-  explicit LinkCache(std::size_t bytes) : capacity_(bytes / sizeof(CachedLink)) {}
+  explicit LinkCache(std::size_t bytes) : capacity_(bytes / sizeof(CachedLink)), counts_(stripes * classes) {}
 
   /// The links of a receiver, ordered by sender.
-  [[nodiscard]] std::span<const CachedLink> ofReceiver(NodeIndex receiver) const;
-
-  /// Whether a link that carries `power` is worth keeping (its caching threshold, ε′ of the paper).
-  [[nodiscard]] bool wants(float power) const { return power >= threshold_; }
-  /// Takes one of the places left in this step; false where none is left.
-  [[nodiscard]] bool reserve() {
-    return capacity_ > 0 && reserved_.fetch_add(1, std::memory_order_relaxed) < capacity_;
+  [[nodiscard]] std::span<const CachedLink> ofReceiver(NodeIndex receiver) const {
+    if (receiver + std::size_t{1} >= firstOfReceiver_.size()) return {};
+    return std::span(links_).subspan(firstOfReceiver_[receiver],
+                                     firstOfReceiver_[receiver + 1] - firstOfReceiver_[receiver]);
   }
 
+  /// Counts a link of this step that carries `power`, and tells whether it is worth keeping: by the caching
+  /// threshold (ε′ of the paper), while places are left. `key` spreads the counting over threads.
+  [[nodiscard]] bool keeps(float power, std::uint64_t key);
+
   /// Replaces the content by the links of the step that has ended, and predicts the next caching threshold:
-  /// light of the next step is taken to be `fade` times that of this one, link by link. `powers` counts this
-  /// step's links by power, see powerClass.
-  void replace(std::vector<CachedLink> links, const std::vector<std::uint64_t>& powers, float fade);
+  /// light of the next step is taken to be `fade` times that of this one, link by link. `receivers`: one more
+  /// than the largest among the links.
+  void replace(std::vector<CachedLink> links, std::size_t receivers, float fade);
 
   [[nodiscard]] std::size_t size() const { return links_.size(); }
 
-  static constexpr std::size_t powerClasses = 512;
-  /// Eight classes an octave; class 0 holds all below 2^-32.
-  static std::size_t powerClass(float power);
-
  private:
+  static constexpr std::size_t stripes = 8;
+  static constexpr std::size_t classes = 512;
+  /// Eight classes an octave; class 0 holds all below 2^-32.
+  static std::size_t classOf(float power);
+
   std::size_t capacity_;
   std::atomic<std::size_t> reserved_{0};
-  std::vector<CachedLink> links_;  // by receiver, then sender
+  std::vector<std::atomic<std::uint64_t>> counts_;  ///< of this step's links, by power
+  std::vector<CachedLink> links_;                   ///< by receiver, then sender
+  std::vector<std::uint32_t> firstOfReceiver_;
   float threshold_ = 0.0F;
 };
 

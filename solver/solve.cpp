@@ -9,8 +9,8 @@
 #include "outside.hpp"
 #include "parallel.hpp"
 #include "sensors.hpp"
+#include "shooting.hpp"
 #include "surfaces.hpp"
-#include "transport.hpp"
 #include "view.hpp"
 
 namespace clerestory {
@@ -29,7 +29,8 @@ Tuning tuningFor(double accuracy, const SolveOptions& options) {
   Tuning tuning;
   tuning.transport.epsilon = static_cast<float>(2e-5 / (finer * finer));
   tuning.transport.elementMin_m = static_cast<float>(std::max(0.08 / finer, 0.02));
-  tuning.transport.direct = {static_cast<float>(60.0 * finer), static_cast<float>(3.0 * std::sqrt(finer))};
+  tuning.transport.portalFluxRays =
+      static_cast<std::uint32_t>(std::clamp(1024.0 * finer * finer, 512.0, 65536.0));
   tuning.transport.skyRays = static_cast<std::uint32_t>(256.0 * finer);
   tuning.transport.endShare = 0.02 * accuracy;
   tuning.transport.memoryBytes = options.memoryBytes;
@@ -79,16 +80,14 @@ void solveDomains(const World& world, const Study& study, const SolveOptions& op
     Hierarchy tree = air.open ? outsideTree(world, study, domain, sides)
                               : Hierarchy(world.pieces(), sides, world.rays.origin(), {});
     LinkCache cache(options.linkCacheBytes);
-    Shooting<K> shooting(light, domain, std::move(tree), tuning.transport, cache);
-    shooting.run();
-    solution.iterations.insert(solution.iterations.end(), shooting.statistics.begin(),
-                               shooting.statistics.end());
-    if (!air.open) solution.balances.push_back(shooting.balance);
-    for (Diagnosis& diagnosis : shooting.diagnoses) addDiagnosis(solution.diagnoses, std::move(diagnosis));
-    Radiosity<K> radiosity = shooting.takeRadiosity();
-    solution.elements += shooting.statistics.empty() ? 0 : shooting.statistics.back().elements;
-    solution.hierarchyBytes += radiosity.tree.bytes() + radiosity.tree.size() * sizeof(Columns<K>);
-    light.add(domain, std::move(radiosity));
+    SolvedDomain<K> solved = shootingHR(light, domain, std::move(tree), tuning.transport, cache);
+    solution.iterations.insert(solution.iterations.end(), solved.statistics.begin(), solved.statistics.end());
+    if (!air.open) solution.balances.push_back(solved.balance);
+    for (Diagnosis& diagnosis : solved.diagnoses) addDiagnosis(solution.diagnoses, std::move(diagnosis));
+    const Hierarchy& grown = solved.radiosity.tree;
+    solution.elements += solved.statistics.empty() ? 0 : solved.statistics.back().elements;
+    solution.hierarchyBytes += grown.bytes() + grown.size() * sizeof(Columns<K>);
+    light.add(domain, std::move(solved.radiosity));
   }
 }
 

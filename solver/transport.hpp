@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shooting hierarchical radiosity in one domain: the algorithm of the paper's section 3.1, step by step.
+// HR(ε, B) of the paper: one transport of a radiosity through a domain, by TRANSPORT-LIGHT from the root's
+// self link and PUSH-PULL. Shooting and gathering differ in what they hand to it.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <solver/solution.hpp>
@@ -12,23 +13,41 @@
 
 namespace clerestory {
 
-/// Legend, as in the paper: sum is the irradiance received so far (the paper's B without its emission, before
-/// the surface's reflectance), unshot is the radiosity that has not been sent yet, next is what this step
-/// received.
+/// What becomes of links between two transports.
+enum class Links {
+  madeAnew,  ///< each transport begins at the root's self link; what the cache holds is only not computed
+             ///< again
+  stored     ///< the cache holds all of them; each transport begins at those of the last
+};
+
 template <int K>
-class Shooting {
+class Transport {
  public:
-  Shooting(const SolvedLight<K>& light, std::int32_t domain, Hierarchy tree,
-           const TransportSettings& settings, LinkCache& cache);
+  /// `radiosity.tree` grows by the elements that transports ask for.
+  Transport(const SolvedLight<K>& light, std::int32_t domain, Radiosity<K>& radiosity,
+            const TransportSettings& settings, LinkCache& cache, Links links);
 
-  /// SHOOTING-HR of the paper: steps until the rest can be exchanged by the root's self link alone.
-  void run();
+  /// Sends the radiosity that `leaves` (#nodes; leaves alone count) hold, and with it the light from outside
+  /// if `withOutside`. Afterwards received() is what it has brought to each leaf.
+  void send(const std::vector<Columns<K>>& leaves, bool withOutside);
 
-  /// The solved domain; the object is spent.
-  Radiosity<K> takeRadiosity();
+  /// Irradiance of each node; leaves hold all of what they got. #nodes
+  [[nodiscard]] const std::vector<Received<K>>& received() const { return received_; }
+  /// Puts the links of the last `send` in the cache, for a next one whose light is `fade` times as strong.
+  void handOverLinks(float fade);
 
-  std::vector<IterationStatistics> statistics;
-  EnergyBalance balance;
+  /// Power of what leaves hold, summed over the domain. [lm]
+  [[nodiscard]] Columns<K> powerOf(const std::vector<Columns<K>>& perNode) const;
+  /// Power of the light that enters from outside, an estimate in open domains. [lm]
+  [[nodiscard]] Columns<K> enteringPower_lm() const;
+  /// Sets what one interaction may err by, from the light that the domain starts with. [lm]
+  void setFirstLight(float firstLight_lm);
+
+  /// Of the last `send`.
+  [[nodiscard]] Tally tally() const;
+  /// Share of all power sent so far that the links missed or overdid, before that was mended.
+  [[nodiscard]] double unscaledDefect() const { return sent_lm_ > 0.0 ? missed_lm_ / sent_lm_ : 0.0; }
+
   std::vector<Diagnosis> diagnoses;
 
  private:
@@ -37,52 +56,44 @@ class Shooting {
     bool parentIsGrown;
     std::uint32_t parent;  ///< node, or 2 × number in the task's list + which child
     Halves halves;
-    Received<K> next[2];
+    Spots spots[2];
+    Received<K> received[2];
   };
   /// What one task (a trunk node as receiver) brings back.
   struct Work {
-    std::vector<Grown> grown;
+    std::vector<std::unique_ptr<Grown>> grown;
     std::vector<CachedLink> kept;
     std::vector<std::pair<std::uint32_t, CachedLink>> keptByGrown;  ///< receiver: number of the grown child
-    std::vector<std::uint64_t> powers;
     Tally tally;
   };
 
-  void transportLight();
-  void receiveCluster(NodeIndex receiver, std::vector<NodeIndex> senders);
-  void receiveElement(const Element& receiver, std::vector<NodeIndex> senders, Work& work);
-  void receiveChildren(const Element& receiver, std::vector<NodeIndex> senders, Work& work);
-  void keep(const Element& receiver, NodeIndex sender, const Link& link, Work& work);
+  void transportLight(std::vector<Sender> senders);
+  void receive(const Receiver& receiver, std::vector<Sender> senders, Work& work);
+  std::vector<Sender> settle(const Receiver& receiver, std::vector<Sender> senders, Incoming<K>& incoming,
+                             Work& work);
+  void descend(const Receiver& receiver, std::vector<Sender> senders, Work& work);
+  void keep(const Receiver& receiver, const Candidate& candidate, Work& work);
 
   void mergeGrown();
   void pushPull();
-  void pullUnshot();
-  [[nodiscard]] Columns<K> receivedPower() const;
-  void addDefect(const Columns<K>& shot_lm);
+  void pull(const std::vector<Columns<K>>& leaves);
+  void mend(const Columns<K>& sent_lm, bool withOutside);
   void closeViews();
-  void scaleToShotPower(const Columns<K>& shot_lm);
-  void finishWithRootLink();
-  [[nodiscard]] Columns<K> powerOf(const std::vector<Columns<K>>& perNode) const;
-  [[nodiscard]] Columns<K> meanReflectance() const;
-  void closeStatistics(int step, double seconds);
+  [[nodiscard]] Columns<K> receivedPower() const;
 
   const World& world_;
-  std::int32_t domain_;
   bool isOpen_;
   TransportSettings settings_;
   LinkCache& cache_;
-  Radiosity<K> radiosity_;
   Hierarchy& tree_;
+  Links links_;
 
-  std::vector<Columns<K>>& sum_;  // irradiance, leaves
   Unshot<K> unshot_;
-  std::vector<Received<K>> next_;                // #nodes
-  std::vector<SixReceived<K>> nextByDirection_;  // #trunk
-  std::vector<Work> work_;                       // #trunk
+  std::vector<Received<K>> received_;                // #nodes
+  std::vector<SixReceived<K>> receivedByDirection_;  // #trunk
+  std::vector<Work> work_;                           // #trunk
   Interactions<K> interactions_;
-  bool lightEnters_ = false;  ///< by portals or from the open sky, in the first step
-  bool firstStep_ = true;
-  double shotSoFar_lm_ = 0.0, missedSoFar_lm_ = 0.0;
+  double sent_lm_ = 0.0, missed_lm_ = 0.0;
 };
 
 }  // namespace clerestory

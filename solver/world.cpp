@@ -61,4 +61,12 @@ float World::visibility(const glm::vec3& from, const glm::vec3& to) const {
   return innerTransmittance(from, to);
 }
 
+void World::visibility(std::span<const RayScene::Segment> segments, std::span<std::uint8_t> blocked,
+                       std::span<float> visible) const {
+  rays.occluded(segments, RayScene::Barrier::opaqueAndGlass, blocked);
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    visible[i] = blocked[i] != 0 ? 0.0F : innerTransmittance(segments[i].from, segments[i].to);
+  }
+}
+
 }  // namespace clerestory

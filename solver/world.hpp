@@ -49,6 +49,9 @@ class World {
   [[nodiscard]] float innerTransmittance(const glm::vec3& from, const glm::vec3& to) const;
   /// 0 where something opaque or domain-bounding stands between, else the inner glass's transmittance.
   [[nodiscard]] float visibility(const glm::vec3& from, const glm::vec3& to) const;
+  /// The same of many segments; `blocked` is room to work in. All #segments.
+  void visibility(std::span<const RayScene::Segment> segments, std::span<std::uint8_t> blocked,
+                  std::span<float> visible) const;
 
  private:
   std::vector<std::optional<Glass>> glass_;  // #materials

@@ -44,20 +44,20 @@ TEST(Link, PackedSpreadComesBackWithinHalfAStep) {
 }
 
 TEST(LinkCache, GivesNoMorePlacesThanFit) {
-  EXPECT_FALSE(LinkCache(0).reserve());
-  EXPECT_FALSE(LinkCache(15).reserve());
+  EXPECT_FALSE(LinkCache(0).keeps(1.0F, 0));
+  EXPECT_FALSE(LinkCache(15).keeps(1.0F, 0));
   for (const std::size_t bytes : {std::size_t{16}, std::size_t{1000}, std::size_t{65536}}) {
     LinkCache cache(bytes);
     std::atomic<std::size_t> got{0};
     const auto take = [&] {
-      for (std::size_t i = 0; i < bytes; ++i) got += cache.reserve() ? 1 : 0;
+      for (std::size_t i = 0; i < bytes; ++i) got += cache.keeps(1.0F, i) ? 1 : 0;
     };
     std::thread other(take);
     take();
     other.join();
     EXPECT_EQ(got, bytes / sizeof(CachedLink));
-    cache.replace({}, std::vector<std::uint64_t>(LinkCache::powerClasses, 0), 1.0F);
-    EXPECT_TRUE(cache.reserve());  // the next step has its places again
+    cache.replace({}, 0, 0.5F);
+    EXPECT_TRUE(cache.keeps(100.0F, 0));  // the next step has its places again
   }
 }
 
@@ -67,7 +67,7 @@ TEST(LinkCache, FindsTheLinksOfAReceiver) {
   for (std::uint32_t i = 0; i < 500; ++i) {
     links.push_back({(i * 7) % 20, (i * 13) % 500, {static_cast<float>(i), 0, 0}});
   }
-  cache.replace(links, std::vector<std::uint64_t>(LinkCache::powerClasses, 0), 1.0F);
+  cache.replace(links, 22, 1.0F);
   EXPECT_EQ(cache.size(), links.size());
   std::size_t found = 0;
   for (NodeIndex receiver = 0; receiver < 25; ++receiver) {
@@ -81,27 +81,31 @@ TEST(LinkCache, FindsTheLinksOfAReceiver) {
   EXPECT_EQ(found, links.size());
 }
 
-TEST(LinkCache, WantsTheCostliestThatFit) {
+// Steps that are alike but for their fading light: those links are kept that carry most, and nearly as many
+// as fit.
+TEST(LinkCache, KeepsTheCostliestThatFit) {
   constexpr std::size_t places = 100;
-  LinkCache cache(places * sizeof(CachedLink));
-  std::vector<float> powersOfLinks;
-  std::vector<std::uint64_t> powers(LinkCache::powerClasses, 0);
-  for (int i = 0; i < 1000; ++i) {
-    powersOfLinks.push_back(std::exp2(-20.0F * static_cast<float>(i) / 1000.0F));
-    ++powers[LinkCache::powerClass(powersOfLinks.back())];
+  for (const float fade : {1.0F, 0.25F}) {
+    LinkCache cache(places * sizeof(CachedLink));
+    float light = 1.0F;
+    for (int step = 0; step < 4; ++step) {
+      std::vector<int> kept;
+      // The weakest come first: without a threshold they would take all places.
+      for (int i = 999; i >= 0; --i) {
+        if (cache.keeps(light * std::exp2(-20.0F * static_cast<float>(i) / 1000.0F),
+                        static_cast<std::uint64_t>(i)))
+          kept.push_back(i);
+      }
+      ASSERT_LE(kept.size(), places);
+      if (step > 0) {
+        // Whole classes of an eighth octave are taken, here up to 7 links each.
+        EXPECT_GE(kept.size(), places - 7);
+        EXPECT_LT(kept.front(), static_cast<int>(places));
+      }
+      cache.replace({}, 0, fade);
+      light *= fade;
+    }
   }
-  const auto wanted = [&](float fade) {
-    return static_cast<std::size_t>(std::count_if(powersOfLinks.begin(), powersOfLinks.end(),
-                                                  [&](float p) { return cache.wants(fade * p); }));
-  };
-  EXPECT_EQ(wanted(1.0F), 1000U);  // nothing is known before the first step
-  cache.replace({}, powers, 1.0F);
-  // Whole classes of an eighth octave are taken, here up to 7 links each.
-  EXPECT_LE(wanted(1.0F), places);
-  EXPECT_GE(wanted(1.0F), places - 7);
-  cache.replace({}, powers, 0.25F);  // all light fades to a quarter: the same links are wanted
-  EXPECT_LE(wanted(0.25F), places);
-  EXPECT_GE(wanted(0.25F), places - 7);
 }
 
 // The whole solve keeps to the budget in every step, gives the same light with any, and uses what it kept.

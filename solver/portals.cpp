@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Judges light from portals by exact form factors, and brings it by rays to points on the panes.
+#include "portals.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <geometry/sampling.hpp>
+#include <solver/formfactor.hpp>
+
+namespace clerestory {
+namespace {
+
+/// Exitance that a portal shows towards a point, were nothing outdoors but sky and ground; not less than half
+/// of what it lets in on average, since facades outdoors may be brighter than the sky there.
+template <int K>
+float exitanceTowards(const SolvedLight<K>& light, const PortalSender<K>& portal, const glm::vec3& point) {
+  const World& world = light.world();
+  const glm::vec3 outward = glm::normalize(portal.centre - point);
+  const std::uint32_t piece = world.building.portals[portal.portal].piece;
+  const float transmittance =
+      world.portalFactor() * world.glassOf(piece).transmittance(std::abs(glm::dot(outward, portal.inward)));
+  const float sky = world.layout.strength(
+      transmittance * (world.layout.template property<K>(world.tintOf(piece)) * light.skyLuminance(outward)));
+  return std::max(std::numbers::pi_v<float> * sky, 0.5F * portal.exitance_lm_m2);
+}
+
+}  // namespace
+
+template <int K>
+std::vector<PortalSender<K>> portalsOf(const SolvedLight<K>& light, std::int32_t domain, std::uint32_t rays) {
+  const World& world = light.world();
+  std::vector<PortalSender<K>> senders;
+  if (!world.layout.sky) return senders;
+  for (std::uint32_t i = 0; i < world.building.portals.size(); ++i) {
+    const Portal& portal = world.building.portals[i];
+    if (portal.inside != domain) continue;
+    PortalSender<K> sender{};
+    sender.portal = i;
+    sender.polygon = world.polygon(portal.piece);
+    sender.inward = world.normalOf(2 * portal.piece + (portal.frontIsInside ? 0U : 1U));
+    sender.area_m2 = static_cast<float>(world.pieces().area_m2[portal.piece]);
+    for (const glm::vec3& corner : sender.polygon)
+      sender.centre += corner / static_cast<float>(sender.polygon.size());
+    for (const glm::vec3& corner : sender.polygon)
+      sender.radius_m = std::max(sender.radius_m, glm::length(corner - sender.centre));
+    sender.spots = spotsOn(sender.polygon, mixKeys(0x90c7, portal.piece));
+
+    const Sequence sequence(mixKeys(0xf10c, portal.piece));
+    Columns<K> sum;
+    for (std::uint32_t ray = 0; ray < rays; ++ray) {
+      const glm::vec3 point = pointOnPolygon<glm::vec3>(sender.polygon, sequence(ray, 0), sequence(ray, 1));
+      const glm::vec3 direction = cosineDirection(-sender.inward, sequence(ray, 2), sequence(ray, 3));
+      sum += light.throughPortal(portal, point - 1e-3F * direction, point);
+    }
+    const Columns<K> exitance = (std::numbers::pi_v<float> / static_cast<float>(rays)) * sum;
+    sender.flux_lm = sender.area_m2 * exitance;
+    sender.exitance_lm_m2 = world.layout.strength(exitance);
+    senders.push_back(sender);
+  }
+  return senders;
+}
+
+template <int K>
+PortalSight lookAtPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
+                         const Receiver& receiver) {
+  PortalSight sight;
+  if (receiver.isCluster()) {
+    const glm::vec3 way = portal.centre - receiver.centre;
+    const float distance_m = glm::length(way);
+    if (glm::dot(-way, portal.inward) <= -receiver.radius_m) return sight;  // all behind the pane
+    const float sine = portal.radius_m / std::max(distance_m - receiver.radius_m, portal.radius_m);
+    const float gap_m = std::max(distance_m - receiver.radius_m - portal.radius_m, 1e-4F);
+    sight.formFactor = std::min(sine * sine, portal.area_m2 / (std::numbers::pi_v<float> * gap_m * gap_m));
+    sight.light_lx = sight.formFactor * exitanceTowards(light, portal, receiver.centre);
+    sight.rise_lx = std::min(1.0F, (receiver.radius_m + portal.radius_m) / distance_m) * sight.light_lx;
+    return sight;
+  }
+  float low = std::numeric_limits<float>::max();
+  float high = 0.0F;
+  const std::size_t count = quadratureCount(receiver.corners);
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec3 point = quadraturePoint(receiver.corners, receiver.centre, i);
+    const bool inFront = glm::dot(point - portal.centre, portal.inward) > 0.0F;
+    const float own = inFront ? pointToPolygon(point, receiver.normal, portal.polygon) : 0.0F;
+    const float own_lx = own > 0.0F ? own * exitanceTowards(light, portal, point) : 0.0F;
+    low = std::min(low, own_lx);
+    high = std::max(high, own_lx);
+    sight.formFactor += own / static_cast<float>(count);
+    sight.light_lx += own_lx / static_cast<float>(count);
+  }
+  sight.rise_lx = cornerRise * (high - low);
+  return sight;
+}
+
+template <int K>
+float seenOfPortal(const World& world, const PortalSender<K>& portal, const Receiver& receiver) {
+  std::array<RayScene::Segment, spotsOfNode> segments;
+  std::array<std::uint8_t, spotsOfNode> blocked;
+  const std::uint64_t turn = mixKeys(receiver.key, portal.portal);
+  for (std::size_t i = 0; i < spotsOfNode; ++i) {
+    segments[i] = {(*receiver.spots)[i],
+                   portal.spots[(i * (2 * (turn & 3U) + 1) + (turn >> 2U)) % spotsOfNode]};
+  }
+  world.rays.occluded(segments, RayScene::Barrier::opaque, blocked);
+  std::size_t seen = 0;
+  for (const std::uint8_t isBlocked : blocked) seen += isBlocked == 0 ? 1U : 0U;
+  return static_cast<float>(seen) / static_cast<float>(spotsOfNode);
+}
+
+template <int K>
+Columns<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
+                                  const Receiver& element, const PortalSight& sight, float samples,
+                                  std::uint64_t& rays) {
+  const World& world = light.world();
+  const Portal& own = world.building.portals[portal.portal];
+  const Sequence sequence(mixKeys(element.key, 0x9a3e + std::uint64_t{portal.portal}));
+  const glm::vec3 middle = element.centre + rayOffset_m * element.normal;
+  // Each sample leaves from a point of its own, so that one set of rays integrates over pane and element.
+  std::uint32_t number = 0;
+  const auto seenFrom = [&](const glm::vec3& onPane) {
+    const glm::vec3 point =
+        pointOnPolygon<glm::vec3>(element.corners, sequence(number, 0), sequence(number, 1));
+    ++number;
+    return light.throughPortal(own, point + rayOffset_m * element.normal, onPane);
+  };
+  const float middleFactor = pointToPolygon(middle, element.normal, portal.polygon);
+  if (middleFactor > 0.5F * sight.formFactor) {
+    const DirectLight<K> direct =
+        directFromPolygon<K>(world.layout, middle, element.normal, portal.polygon, {0.0F, samples},
+                             mixKeys(element.key, portal.portal), seenFrom);
+    rays += direct.rays;
+    return (sight.formFactor / middleFactor) * direct.illuminance_lx;
+  }
+  // The middle sees less of the pane than the corners do: it has no say here.
+  Columns<K> sum;
+  const std::size_t count = quadratureCount(element.corners);
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec3 point =
+        quadraturePoint(element.corners, element.centre, i) + rayOffset_m * element.normal;
+    if (glm::dot(point - portal.centre, portal.inward) <= 0.0F) continue;
+    const DirectLight<K> direct = directFromPolygon<K>(
+        world.layout, point, element.normal, portal.polygon, {0.0F, samples / static_cast<float>(count)},
+        mixKeys(element.key, portal.portal + (i + 1) * 0x10001U),
+        [&](const glm::vec3& onPane) { return light.throughPortal(own, point, onPane); });
+    rays += direct.rays;
+    sum += (1.0F / static_cast<float>(count)) * direct.illuminance_lx;
+  }
+  return sum;
+}
+
+template <int K>
+std::array<Columns<K>, 6> clusterLightFromPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
+                                                 const Hierarchy& tree, NodeIndex cluster,
+                                                 std::uint64_t& rays) {
+  const Portal& own = light.world().building.portals[portal.portal];
+  const Spots& spots = tree.spots[cluster];
+  Columns<K> seen;
+  float count = 0.0F;
+  for (std::size_t i = 0; i < spotsOfNode; ++i) {
+    const glm::vec3& onPane = portal.spots[(i + tree.key[cluster]) % spotsOfNode];
+    const glm::vec3 way = onPane - spots[i];
+    if (glm::dot(way, tree.spotNormal(cluster, i)) <= 0.0F || glm::dot(way, portal.inward) >= 0.0F) continue;
+    count += 1.0F;
+    seen += light.throughPortal(own, spots[i] + rayOffset_m * tree.spotNormal(cluster, i), onPane);
+  }
+  rays += static_cast<std::uint64_t>(count);
+  std::array<Columns<K>, 6> six{};
+  if (count == 0.0F) return six;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const float formFactor = pointToPolygon(tree.centre[cluster], sixDirections[k], portal.polygon);
+    six[k] = (std::numbers::pi_v<float> * formFactor / count) * seen;
+  }
+  return six;
+}
+
+#define CLERESTORY_INSTANTIATE(K)                                                                            \
+  template std::vector<PortalSender<K>> portalsOf<K>(const SolvedLight<K>&, std::int32_t, std::uint32_t);    \
+  template PortalSight lookAtPortal<K>(const SolvedLight<K>&, const PortalSender<K>&, const Receiver&);      \
+  template float seenOfPortal<K>(const World&, const PortalSender<K>&, const Receiver&);                     \
+  template Columns<K> elementLightFromPortal<K>(const SolvedLight<K>&, const PortalSender<K>&,               \
+                                                const Receiver&, const PortalSight&, float, std::uint64_t&); \
+  template std::array<Columns<K>, 6> clusterLightFromPortal<K>(                                              \
+      const SolvedLight<K>&, const PortalSender<K>&, const Hierarchy&, NodeIndex, std::uint64_t&);
+CLERESTORY_INSTANTIATE(1)
+CLERESTORY_INSTANTIATE(2)
+CLERESTORY_INSTANTIATE(4)
+CLERESTORY_INSTANTIATE(8)
+#undef CLERESTORY_INSTANTIATE
+
+}  // namespace clerestory

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// SHOOTING-HR: each step sends what is unshot, and ends with the root's self link (Stamminger et al.,
+// section 3.1).
+//
+// Legend, as in the paper: sum is what was received so far (irradiance here, where the paper sums radiosity),
+// unshot is the radiosity that has not been sent yet, next is what a step has brought.
+#include "shooting.hpp"
+
+#include <algorithm>
+
+namespace clerestory {
+namespace {
+
+// The last interaction is the root's self link: the rest of the series in closed form, E = M / (1 -
+// reflectance) with M the mean unshot exitance; in an open domain only the share that does not escape comes
+// back each time.
+template <int K>
+void finishWithRootLink(const Domain& domain, const Columns<K>& unshotPower_lm, SolvedDomain<K>& solved) {
+  const Hierarchy& tree = solved.radiosity.tree;
+  const auto stays =
+      static_cast<float>(1.0 - (domain.open ? domain.escape_m2 / std::max(domain.area_m2, 1e-9) : 0.0));
+  const Columns<K> mean = (1.0F / tree.area_m2[0]) * unshotPower_lm;
+  const Columns<K> reflectance = solved.meanReflectance();
+  Columns<K> ambient;
+  for (int c = 0; c < K; ++c) ambient[c] = stays * mean[c] / std::max(1.0F - stays * reflectance[c], 1e-6F);
+  for (NodeIndex node = 0; node < tree.size(); ++node) {
+    if (tree.isLeaf(node)) solved.radiosity.irradiance_lx[node] += ambient;
+  }
+  Tally tally;
+  tally.links = 1;
+  solved.addStatistics(tally, 0, 0.0F, 0.0);
+}
+
+}  // namespace
+
+template <int K>
+SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hierarchy treeIn,
+                           const TransportSettings& settings, LinkCache& cache) {
+  const World& world = light.world();
+  SolvedDomain<K> solved(world, domain, std::move(treeIn));
+  const Hierarchy& tree = solved.radiosity.tree;
+  Transport<K> transport(light, domain, solved.radiosity, settings, cache, Links::madeAnew);
+
+  // Line 2 of the listing: what is unshot at first is the emission. (Its line 1 should read B <- E; here the
+  // sum holds irradiance, and emission is added where exitance is asked for.)
+  std::vector<Columns<K>>& sum = solved.radiosity.irradiance_lx;
+  std::vector<Columns<K>> unshot = solved.emission();
+  Columns<K> unshotPower_lm = transport.powerOf(unshot);
+  const Columns<K> entering_lm = transport.enteringPower_lm();
+  float before_lm = world.layout.strength(unshotPower_lm) + world.layout.strength(entering_lm);
+  const bool isOpen = world.building.domains[static_cast<std::size_t>(domain)].open;
+  solved.balance.emitted_lm =
+      luminanceOf(world.layout.totalColour(isOpen ? unshotPower_lm : unshotPower_lm + entering_lm));
+  if (!(before_lm > 0.0F)) return solved;
+  transport.setFirstLight(before_lm);
+
+  for (int step = 1; step <= settings.stepsMax; ++step) {
+    const Stopwatch watch;
+    const std::size_t nodesBefore = tree.size();
+    const std::size_t cached = cache.size();
+    transport.send(unshot, step == 1);
+    inheritValues(tree, nodesBefore, sum);
+    unshot.resize(tree.size());
+    for (NodeIndex node = 0; node < tree.size(); ++node) {
+      if (!tree.isLeaf(node)) continue;
+      const Columns<K>& next = transport.received()[node].irradiance_lx;
+      sum[node] += next;
+      unshot[node] = solved.reflected(node, next);
+    }
+    unshotPower_lm = transport.powerOf(unshot);
+    const float after_lm = world.layout.strength(unshotPower_lm);
+    transport.handOverLinks(std::min(after_lm / before_lm, 1.0F));
+    before_lm = std::max(after_lm, 1e-30F);
+    solved.addStatistics(transport.tally(), cached, after_lm, watch.seconds());
+
+    const bool isRootLinkAlone = transport.tally().links <= 1;
+    const float sum_lm = world.layout.strength(transport.powerOf(sum));
+    if (isRootLinkAlone || after_lm <= static_cast<float>(settings.endShare) * sum_lm) break;
+  }
+  finishWithRootLink(world.building.domains[static_cast<std::size_t>(domain)], unshotPower_lm, solved);
+  cache.replace({}, 0, 1.0F);
+  solved.balance.unscaledDefect = transport.unscaledDefect();
+  solved.closeBalance(world);
+  solved.diagnoses = transport.diagnoses;
+  return solved;
+}
+
+template SolvedDomain<1> shootingHR(const SolvedLight<1>&, std::int32_t, Hierarchy, const TransportSettings&,
+                                    LinkCache&);
+template SolvedDomain<2> shootingHR(const SolvedLight<2>&, std::int32_t, Hierarchy, const TransportSettings&,
+                                    LinkCache&);
+template SolvedDomain<4> shootingHR(const SolvedLight<4>&, std::int32_t, Hierarchy, const TransportSettings&,
+                                    LinkCache&);
+template SolvedDomain<8> shootingHR(const SolvedLight<8>&, std::int32_t, Hierarchy, const TransportSettings&,
+                                    LinkCache&);
+
+}  // namespace clerestory

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sets a domain up for its solve, and sums up afterwards.
+#include "solveddomain.hpp"
+
+#include <algorithm>
+
+namespace clerestory {
+
+template <int K>
+SolvedDomain<K>::SolvedDomain(const World& world, std::int32_t domainIn, Hierarchy tree)
+    : domain(domainIn), radiosity{std::move(tree), {}, {}, {}, {}} {
+  radiosity.irradiance_lx.resize(radiosity.tree.size());
+  for (const TreeSide& side : radiosity.tree.sides) {
+    const Material& material = world.materialOf(side.side / 2);
+    radiosity.reflectance.push_back(world.layout.template property<K>(world.reflectanceOf(side.side / 2)));
+    radiosity.exitance_lm_m2.push_back(
+        world.layout.template light<K>(world.layout.electricColumn(), material.exitance_lm_m2));
+    if (world.layout.strength(radiosity.exitance_lm_m2.back()) > 0.0F) {
+      radiosity.emitters.push_back(static_cast<std::uint32_t>(radiosity.exitance_lm_m2.size() - 1));
+    }
+  }
+  balance.domain = domain;
+}
+
+template <int K>
+std::vector<Columns<K>> SolvedDomain<K>::emission() const {
+  const Hierarchy& tree = radiosity.tree;
+  std::vector<Columns<K>> emission(tree.size());
+  for (NodeIndex node = 0; node < tree.size(); ++node) {
+    if (!tree.isCluster(node)) emission[node] = radiosity.exitance_lm_m2[tree.treeSide[node]];
+  }
+  return emission;
+}
+
+template <int K>
+Columns<K> SolvedDomain<K>::meanReflectance() const {
+  Columns<K> sum;
+  float area_m2 = 0.0F;
+  for (std::size_t side = 0; side < radiosity.tree.sides.size(); ++side) {
+    const float own_m2 = radiosity.tree.area_m2[radiosity.tree.sides[side].root];
+    sum += own_m2 * radiosity.reflectance[side];
+    area_m2 += own_m2;
+  }
+  return (1.0F / area_m2) * sum;
+}
+
+template <int K>
+void SolvedDomain<K>::addStatistics(const Tally& tally, std::size_t cached, float unshotPower_lm,
+                                    double seconds) {
+  IterationStatistics row;
+  row.domain = domain;
+  row.iteration = static_cast<int>(statistics.size()) + 1;
+  row.linksRequired = tally.links;
+  row.linksCached = cached;
+  row.linksReused = tally.reused;
+  row.visibilityTests = tally.rays;
+  row.unshotPower_lm = static_cast<double>(unshotPower_lm);
+  row.seconds = seconds;
+  for (NodeIndex node = 0; node < radiosity.tree.size(); ++node)
+    row.elements += radiosity.tree.isLeaf(node) ? 1U : 0U;
+  statistics.push_back(row);
+}
+
+template <int K>
+void SolvedDomain<K>::closeBalance(const World& world) {
+  const Hierarchy& tree = radiosity.tree;
+  for (NodeIndex node = 0; node < tree.size(); ++node) {
+    if (!tree.isLeaf(node)) continue;
+    const Columns<K>& irradiance_lx = radiosity.irradiance_lx[node];
+    const Columns<K> absorbed = irradiance_lx - reflected(node, irradiance_lx);
+    const double power_lm =
+        static_cast<double>(tree.area_m2[node]) * luminanceOf(world.layout.totalColour(absorbed));
+    const bool isGlass = world.materialOf(tree.sides[tree.treeSide[node]].side / 2).glazing;
+    (isGlass ? balance.escaped_lm : balance.absorbed_lm) += power_lm;
+  }
+}
+
+template struct SolvedDomain<1>;
+template struct SolvedDomain<2>;
+template struct SolvedDomain<4>;
+template struct SolvedDomain<8>;
+
+}  // namespace clerestory

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A domain while it is solved and after: its radiosity, where its light went, what each step took.
+#pragma once
+
+#include <chrono>
+#include <vector>
+
+#include <solver/solution.hpp>
+
+#include "radiosity.hpp"
+#include "transport.hpp"
+
+namespace clerestory {
+
+template <int K>
+struct SolvedDomain {
+  std::int32_t domain;
+  Radiosity<K> radiosity;
+  std::vector<IterationStatistics> statistics;
+  EnergyBalance balance;
+  std::vector<Diagnosis> diagnoses;
+
+  /// Dark as yet: what its sides reflect and emit is known.
+  SolvedDomain(const World& world, std::int32_t domain, Hierarchy tree);
+
+  /// Emission of leaves. #nodes
+  [[nodiscard]] std::vector<Columns<K>> emission() const;
+  /// What leaves send of the irradiances that they hold. #nodes
+  [[nodiscard]] Columns<K> reflected(NodeIndex leaf, const Columns<K>& irradiance_lx) const {
+    return radiosity.reflectance[radiosity.tree.treeSide[leaf]] * irradiance_lx;
+  }
+  /// Mean reflectance of all sides, glass as it reflects inwards.
+  [[nodiscard]] Columns<K> meanReflectance() const;
+
+  void addStatistics(const Tally& tally, std::size_t cached, float unshotPower_lm, double seconds);
+  /// Adds up what was absorbed and what left through glass.
+  void closeBalance(const World& world);
+};
+
+/// Gives nodes made since the tree had `before` of them the values of their parents.
+template <class Value>
+void inheritValues(const Hierarchy& tree, std::size_t before, std::vector<Value>& values) {
+  values.resize(tree.size());
+  for (NodeIndex node = 0; node < tree.size(); ++node) {
+    const NodeIndex first = tree.firstChild[node];
+    if (first == noNode || first < before) continue;
+    values[first] = values[first + 1] = values[node];
+  }
+}
+
+/// Seconds since it was made.
+class Stopwatch {
+ public:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace clerestory
