@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What must not change a result, and what must change it in a known way: mirrors, turns, twice the sky, inner
-// glass.
+// What must not change a result, and what must change it in a known way: mirrors, turns, size, order, walls
+// in pieces, twice the sky, inner glass.
 #include <numbers>
 #include <optional>
 
