@@ -101,6 +101,53 @@ double bySampling(dvec3 point, dvec3 normal, const Polygon& p, int n) {
   return sum / (pi * n * n);
 }
 
+/// Parallel rectangles at distance c, each given by its x0, x1, y0, y1 (Hottel's closed form for any offset).
+double parallel(const std::array<double, 4>& from, const std::array<double, 4>& to, double c) {
+  const auto part = [c](double u, double v) {  // a double integral of the kernel, taken twice along x and y
+    const double su = std::hypot(u, c), sv = std::hypot(v, c);
+    return u * sv * std::atan(u / sv) + v * su * std::atan(v / su) -
+           0.5 * c * c * std::log(u * u + v * v + c * c);
+  };
+  double sum = 0.0;
+  for (int i = 0; i < 16; ++i) {
+    const double sign = (i ^ i >> 1 ^ i >> 2 ^ i >> 3) % 2 == 0 ? 1.0 : -1.0;
+    sum += sign * part(to[i >> 1 & 1] - from[i & 1], to[2 + (i >> 3 & 1)] - from[2 + (i >> 2 & 1)]);
+  }
+  return sum / (2.0 * pi * (from[1] - from[0]) * (from[3] - from[2]));
+}
+
+double areaOf(const Polygon& polygon) {
+  dvec3 sum(0.0);
+  for (std::size_t i = 2; i < polygon.size(); ++i)
+    sum += glm::cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
+  return 0.5 * glm::length(sum);
+}
+
+/// Stokes' theorem on both ends, for polygons that face and do not touch each other: the mean logarithm of
+/// the distance over each pair of edges, by Gauss' five points on 16 parts of each.
+double byContours(const Polygon& from, const Polygon& to) {
+  const std::array<double, 5> places = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
+                                        0.9061798459386640};
+  const std::array<double, 5> weights = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
+                                         0.4786286704993665, 0.2369268850561891};
+  constexpr std::size_t parts = 16, count = 5 * parts;
+  const auto place = [&](std::size_t i) {
+    return (static_cast<double>(i / 5) + 0.5 + 0.5 * places[i % 5]) / parts;
+  };
+  double sum = 0.0;
+  for (std::size_t a = 0; a < from.size(); ++a)
+    for (std::size_t b = 0; b < to.size(); ++b) {
+      const dvec3 u = from[(a + 1) % from.size()] - from[a], v = to[(b + 1) % to.size()] - to[b];
+      double mean = 0.0;
+      for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t j = 0; j < count; ++j)
+          mean += 0.25 * weights[i % 5] * weights[j % 5] / (parts * parts) *
+                  std::log(glm::distance(from[a] + place(i) * u, to[b] + place(j) * v));
+      sum += glm::dot(u, v) * mean;
+    }
+  return std::abs(sum) / (2.0 * pi * areaOf(from));
+}
+
 /// Numbers that are the same on every machine, in [-1, 1).
 class Numbers {
  public:
@@ -328,6 +375,58 @@ TEST(PolygonToPolygon, PerpendicularRectanglesWithACommonEdge) {
   for (const auto& [w, h] : {std::pair{1.0, 1.0}, std::pair{2.0, 0.5}, std::pair{0.05, 1.0}})
     EXPECT_NEAR(polygonToPolygon(horizontal(0, 1, 0, w, 0), upright(0, 1, 0, 0, h), 1e-7), commonEdge(w, h),
                 1e-7);
+}
+
+TEST(PolygonToPolygon, ParallelRectanglesAnywhere) {
+  EXPECT_NEAR(parallel({0, 2, 0, 1}, {0, 2, 0, 1}, 0.7), opposed(2, 1, 0.7), 1e-14);
+  for (const double c : {0.2, 1.0, 5.0})
+    for (const auto& to : {std::array{0.5, 1.0, 0.25, 0.5}, std::array{-3.0, 4.0, -2.0, 2.0},
+                           std::array{2.0, 3.0, 1.0, 4.0}, std::array{6.0, 6.5, -4.0, -1.0}})
+      EXPECT_NEAR(
+          polygonToPolygon(horizontal(0, 2, 0, 1, 0), horizontal(to[0], to[1], to[2], to[3], c), 1e-9),
+          parallel({0, 2, 0, 1}, to, c), 2e-9);
+}
+
+TEST(PolygonToPolygon, PerpendicularRectanglesApart) {
+  const Polygon floor = horizontal(0, 3, -2, -0.25, 0);
+  for (const Polygon& wall : {upright(0, 3, 0, 0, 2), upright(1, 2, 0.5, 1, 1.5), upright(5, 6, 0, 0.5, 4)})
+    EXPECT_NEAR(polygonToPolygon(floor, wall, 1e-9), byContours(floor, wall), 2e-9);
+  // Floors and walls in pairs along one line: half of the floor sees the wall that it touches and the one
+  // beside that.
+  const double whole = commonEdge(0.5, 0.5);  // 2 x 1 m on 2 x 1 m, in units of the edge
+  const double same = commonEdge(1.0, 1.0);
+  EXPECT_NEAR(polygonToPolygon(horizontal(0, 1, 0, 1, 0), upright(1, 2, 0, 0, 1), 1e-7), whole - same, 2e-7);
+}
+
+TEST(PolygonToPolygon, TiltedPolygons) {
+  const Polygon floor = horizontal(0, 2, 0, 1, 0);
+  for (const double angle : {0.5, 0.8, 1.4, 2.4}) {  // a board beside the floor, its front towards all of it
+    const dvec3 rise(0.0, std::cos(angle), std::sin(angle)), foot(0.3, 1.2, 0.1);
+    const Polygon board = {foot, foot + dvec3(1.5, 0.0, 0.0), foot + dvec3(1.5, 0.0, 0.0) + rise,
+                           foot + rise};
+    const double expected = byContours(floor, board);
+    EXPECT_GT(expected, 0.0);
+    EXPECT_NEAR(polygonToPolygon(floor, board, 1e-9), expected, 2e-9) << angle;
+  }
+  // The faces of a regular tetrahedron touch at 70.5 degrees and share all light among three.
+  const std::array<dvec3, 4> corners = {dvec3(1, 1, 1), dvec3(1, -1, -1), dvec3(-1, 1, -1), dvec3(-1, -1, 1)};
+  const Polygon base = {corners[0], corners[2], corners[1]};  // its front towards the fourth
+  EXPECT_NEAR(polygonToPolygon(base, Polygon{corners[0], corners[1], corners[3]}, 1e-7), 1.0 / 3.0, 1e-7);
+}
+
+TEST(PolygonToPolygon, TinyAgainstHuge) {
+  // A square millimetre a metre over a hectare and off its middle.
+  Polygon tiny = horizontal(12.0, 12.001, -33.0, -32.999, 1.0);
+  std::swap(tiny[1], tiny[3]);  // looks down
+  const Polygon huge = horizontal(-50, 50, -50, 50, 0.0);
+  const double seen = parallelCorner(62, 17, 1) + parallelCorner(38, 17, 1) + parallelCorner(62, 83, 1) +
+                      parallelCorner(38, 83, 1);
+  EXPECT_NEAR(polygonToPolygon(tiny, huge, 1e-9), seen, 1e-7);  // over the millimetre it varies by 1e-8
+  const double back = polygonToPolygon(huge, tiny, 1e-16);
+  EXPECT_NEAR(back / (1e-10 * seen), 1.0, 2e-6);
+  // Touching: a strip of a millimetre's height all along a wall's foot sees half of its hemisphere filled.
+  const double strip = polygonToPolygon(upright(0, 10, 0, 0, 0.001), horizontal(0, 10, -10, 0, 0), 1e-6);
+  EXPECT_NEAR(strip, commonEdge(0.0001, 1.0), 1e-6);
 }
 
 TEST(PolygonToPolygon, Reciprocity) {

@@ -6,15 +6,15 @@ namespace clerestory {
 namespace {
 
 // What is emitted is absorbed or leaves; the scaling of received to shot power takes care of that in every
-// step, so that a per cent is generous. Before scaling, sampled visibility and clusters may miss some per
-// cent; the issue asks for less than 1 % in the end.
-void expectBalance(const EnergyBalance& balance) {
+// step, so that a per cent is generous. Before scaling, links should miss less than 1 %, which with
+// furniture they do not reach yet.
+void expectBalance(const EnergyBalance& balance, double defectMost) {
   const double missing_lm = balance.emitted_lm - balance.absorbed_lm - balance.escaped_lm;
   std::cout << "emitted " << balance.emitted_lm << " lm, missing " << 100.0 * missing_lm / balance.emitted_lm
             << " %, unscaled defect " << 100.0 * balance.unscaledDefect << " %\n";
   EXPECT_GT(balance.emitted_lm, 0.0);
   EXPECT_LE(std::abs(missing_lm), 0.01 * balance.emitted_lm);
-  EXPECT_LT(balance.unscaledDefect, 0.05);
+  EXPECT_LT(balance.unscaledDefect, defectMost);
 }
 
 TEST(Cube, EmitterAgreesWithTheReference) {
@@ -37,25 +37,26 @@ TEST(Cube, EmitterAgreesWithTheReference) {
   const EnergyBalance balance = cube.balanceOf(cube.building.rooms[0].domain);
   EXPECT_NEAR(balance.emitted_lm, 0.16 * 56235.0, 1.0);  // float areas of some 0.1 m2
   EXPECT_EQ(balance.escaped_lm, 0.0);
-  expectBalance(balance);
+  expectBalance(balance, 0.01);
 }
 
 TEST(Balance, DaylitOfficeKeepsItsLight) {
-  for (const double accuracy : {0.05, 0.02}) {
+  // At fine accuracy 1.04 % was reached when this was written, not yet the 1 % that is meant.
+  for (const auto& [accuracy, defectMost] : {std::pair{0.05, 0.01}, std::pair{0.02, 0.015}}) {
     Study study;
     study.accuracy = accuracy;
     const Solved office = solved(testModel("reference/refoffice/refoffice.obj", study), study);
     ASSERT_EQ(office.building.rooms.size(), 1U);
     const EnergyBalance balance = office.balanceOf(office.building.rooms[0].domain);
     EXPECT_GT(balance.escaped_lm, 0.0);  // back through the window
-    expectBalance(balance);
+    expectBalance(balance, defectMost);
   }
 }
 
 TEST(Balance, FurnishedOfficeKeepsItsLight) {
   const Solved office = solved(testModel("reference/furnished/furnished.obj", {}), {});
   ASSERT_EQ(office.building.rooms.size(), 1U);
-  expectBalance(office.balanceOf(office.building.rooms[0].domain));
+  expectBalance(office.balanceOf(office.building.rooms[0].domain), 0.05);
 }
 
 }  // namespace

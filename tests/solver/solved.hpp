@@ -42,6 +42,25 @@ inline Solved solved(const Scene& scene, const Study& study) {
   return {std::move(building), std::move(solution)};
 }
 
+/// Every figure of a solution, for comparison to the bit.
+inline std::vector<double> figuresOf(const Solution& solution) {
+  std::vector<double> figures;
+  for (const GridValues& grid : solution.grids) {
+    for (const SensorValue& sensor : grid.sensors) {
+      figures.insert(figures.end(), {sensor.illuminance_lx, sensor.direct_lx, sensor.reflected_lx,
+                                     sensor.sky_lx, sensor.sun_lx, sensor.electric_lx, sensor.error_lx});
+    }
+  }
+  for (const SurfaceValue& row : solution.surfaces) {
+    figures.insert(
+        figures.end(),
+        {static_cast<double>(row.surface), static_cast<double>(row.room), row.area_m2, row.illuminanceMean_lx,
+         row.illuminanceMin_lx, row.illuminanceMax_lx, row.exitanceMean_lm_m2.x, row.exitanceMean_lm_m2.y,
+         row.exitanceMean_lm_m2.z, row.error_lx, static_cast<double>(row.elements)});
+  }
+  return figures;
+}
+
 /// A model of tests/data, with the study's rules on it.
 inline Scene testModel(const std::string& name, const Study& study) {
   Scene scene = readModel(std::filesystem::path(CLERESTORY_TEST_DATA) / name, {});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What must not change a result, and what must change it in a known way: mirrors, turns, twice the sky, inner
-// glass.
+// What must not change a result, and what must change it in a known way: mirrors, turns, size, order, walls
+// in pieces, twice the sky, inner glass.
+#include <numbers>
 #include <optional>
 
 #include "solved.hpp"
@@ -65,18 +66,82 @@ Study fineStudy() {
   return study;
 }
 
+const Solved& unmovedFine() {
+  static const Solved office = solvedMoved(officeWithCabinet(), officePoints(), fineStudy(), stay);
+  return office;
+}
+
 TEST(Symmetry, MirroredOfficeGivesTheMirroredResult) {
-  const Solved original = solvedMoved(officeWithCabinet(), officePoints(), fineStudy(), stay);
   const Solved mirrored = solvedMoved(officeWithCabinet(), officePoints(), fineStudy(),
                                       [](const glm::dvec3& p) { return glm::dvec3(3.6 - p.x, p.y, p.z); });
-  expectSameWithinError("mirrored", mirrored, original);
+  expectSameWithinError("mirrored", mirrored, unmovedFine());
 }
 
 TEST(Symmetry, OvercastSkyLooksTheSameAllRound) {
-  const Solved original = solvedMoved(officeWithCabinet(), officePoints(), fineStudy(), stay);
   const Solved turned = solvedMoved(officeWithCabinet(), officePoints(), fineStudy(),
                                     [](const glm::dvec3& p) { return glm::dvec3(-p.y, p.x, p.z); });
-  expectSameWithinError("turned by 90 degrees", turned, original);
+  expectSameWithinError("turned by 90 degrees", turned, unmovedFine());
+}
+
+TEST(Symmetry, OvercastSkyLooksTheSameFromAskew) {
+  const double c = std::cos(std::numbers::pi / 6.0);
+  const double s = std::sin(std::numbers::pi / 6.0);
+  const Solved turned =
+      solvedMoved(officeWithCabinet(), officePoints(), fineStudy(),
+                  [&](const glm::dvec3& p) { return glm::dvec3(c * p.x - s * p.y, s * p.x + c * p.y, p.z); });
+  expectSameWithinError("turned by 30 degrees", turned, unmovedFine());
+}
+
+TEST(Symmetry, TwiceTheSizeHasTheSameDaylight) {
+  const Solved large = solvedMoved(officeWithCabinet(), officePoints(), fineStudy(),
+                                   [](const glm::dvec3& p) { return 2.0 * p; });
+  expectSameWithinError("twice as large", large, unmovedFine());
+}
+
+TEST(Symmetry, OrderInTheFileChangesNothing) {
+  const std::vector<double> original =
+      figuresOf(solvedMoved(officeWithCabinet(), officePoints(), {}, stay).solution);
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const Solved other = solvedMoved(shuffled(officeWithCabinet(), seed), officePoints(), {}, stay);
+    EXPECT_TRUE(figuresOf(other.solution) == original) << "order " << seed;
+  }
+}
+
+// The office's east wall in ten strips, drawn the same way round: of its own object or each of one of its
+// own.
+Scene officeWithWallInTen(bool ownObjects) {
+  const Scene whole = officeWithCabinet();
+  Drawing parts;
+  parts.scene.materials = whole.materials;
+  parts.scene.objects = whole.objects;
+  for (std::size_t face = 0; face < whole.faces.size(); ++face) {
+    Outline outline;
+    for (const std::uint32_t corner : whole.faces[face]) outline.push_back(whole.points[corner]);
+    if (!std::all_of(outline.begin(), outline.end(), [](const glm::dvec3& p) { return p.x == 3.6; })) {
+      parts.face(outline, whole.faceMaterial[face], whole.faceObject[face]);
+      continue;
+    }
+    const auto edge_m = [](int i) { return 8.2 * (0.07 * i + 0.003 * i * i); };  // from narrow to wide
+    for (int i = 0; i < 10; ++i) {
+      const Outline strip = {
+          {3.6, edge_m(i), 2.8}, {3.6, edge_m(i + 1), 2.8}, {3.6, edge_m(i + 1), 0}, {3.6, edge_m(i), 0}};
+      parts.face(strip, whole.faceMaterial[face],
+                 ownObjects ? addObject(parts, "strip " + std::to_string(i)) : whole.faceObject[face]);
+    }
+  }
+  EXPECT_EQ(parts.scene.faces.size(), whole.faces.size() + 9);
+  return parts.scene;
+}
+
+TEST(Symmetry, WallInTenPiecesIsOneWall) {
+  const Solved whole = solvedMoved(officeWithCabinet(), officePoints(), {}, stay);
+  const Solved pieces = solvedMoved(officeWithWallInTen(false), officePoints(), {}, stay);
+  EXPECT_TRUE(figuresOf(pieces.solution) == figuresOf(whole.solution));
+}
+
+TEST(Symmetry, WallOfTenObjectsGivesTheSameLight) {
+  const Solved objects = solvedMoved(officeWithWallInTen(true), officePoints(), fineStudy(), stay);
+  expectSameWithinError("a wall of ten objects", objects, unmovedFine());
 }
 
 TEST(Symmetry, PlaceFarFromTheOriginChangesNothing) {
