@@ -10,9 +10,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <geometry/parallel.hpp>
 #include <geometry/sampling.hpp>
-
-#include "parallel.hpp"
 
 namespace clerestory {
 template <int K>
