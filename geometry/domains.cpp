@@ -25,8 +25,8 @@ constexpr std::uint32_t raysOfPoint = 6;
 constexpr std::uint32_t pointsOfSide = 3;  // at least; one where a side is smaller than an opening
 constexpr double pointsOfModel = 4000.0;   // further ones, shared out by area
 constexpr std::uint32_t pointsOfSideMax = 256;
-constexpr std::uint32_t closerRays = 32;    // of a closer look
-constexpr std::uint32_t fewCloserRays = 8;  // at a side smaller than an opening, or while they all agree
+constexpr std::uint32_t closerRays = 32;   // of a closer look
+constexpr std::uint32_t agreeingRays = 8;  // of these, where all agree with the side's points
 constexpr std::uint32_t nowhere = RayScene::Hit::none;
 
 /// A place over a side where the air is asked for.
@@ -111,20 +111,19 @@ class AirSurvey {
     return false;
   }
 
-  /// The air that a side is given after a closer look: the one of those among `lit` that is met most from
-  /// it; `own` where none is. Most of a seat's upper face may lie under its cushion.
+  /// The air that a side is given after a closer look (unless it is small): the one of those among `lit` that
+  /// is met most from it; `own` where none is. Most of a seat's upper face may lie under its cushion.
   [[nodiscard]] std::uint32_t closerAirOf(std::uint32_t side, std::uint32_t own,
                                           const std::vector<bool>& lit) const {
     const bool isLit = own != nowhere && lit[own];
-    if (isLit && !isInDoubt(side)) return own;
+    if (isSmall(side) || (isLit && !isInDoubt(side))) return own;
     const auto polygon = localPolygon(side / 2);
     const glm::vec3& normal = places_[firstPlace_[side]].normal;
-    const std::uint32_t count = isSmall(polygon) ? fewCloserRays : closerRays;
     const Sequence sequence(mixKeys(0xd2, side));
     Votes votes;
     bool agree = isLit;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      if (votes.isDecided(count - i) || (agree && i == fewCloserRays)) break;
+    for (std::uint32_t i = 0; i < closerRays; ++i) {
+      if (votes.isDecided(closerRays - i) || (agree && i == agreeingRays)) break;
       const glm::vec3 start =
           pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1)) + rayOffset_m * normal;
       const std::uint32_t other = look(start, cosineDirection(normal, sequence(i, 2), sequence(i, 3))).place;
@@ -147,10 +146,13 @@ class AirSurvey {
   }
 
  private:
+  [[nodiscard]] bool isSmall(std::uint32_t side) const {
+    return firstPlace_[side + 1] - firstPlace_[side] == 1;
+  }
+
   /// Whether a side's places are too few to be sure of, or disagree about their air: a closer look decides.
   [[nodiscard]] bool isInDoubt(std::uint32_t side) const {
     const std::uint32_t count = firstPlace_[side + 1] - firstPlace_[side];
-    if (count == 1) return !places_[firstPlace_[side]].isFree;
     if (count <= pointsOfSide + 1) return true;
     std::uint32_t first = nowhere;
     for (std::uint32_t place = firstPlace_[side]; place < firstPlace_[side + 1]; ++place) {
@@ -175,7 +177,7 @@ class AirSurvey {
   }
 
   /// Whether a polygon has no room for two airs that something could fly between.
-  static bool isSmall(const std::vector<glm::vec3>& polygon) {
+  static bool isSmallerThanOpening(const std::vector<glm::vec3>& polygon) {
     return std::ranges::all_of(polygon, [&](const glm::vec3& corner) {
       return glm::distance(corner, polygon[0]) < 2.0F * bundle_m;
     });
@@ -203,7 +205,7 @@ class AirSurvey {
     for (std::uint32_t side = 0; side < 2 * pieces_.size(); ++side) {
       const double share = pieces_.area_m2[side / 2] / std::max(total_m2, 1e-9);
       const auto further = static_cast<std::uint32_t>(pointsOfModel * share);
-      const std::uint32_t least = isSmall(localPolygon(side / 2)) ? 1 : pointsOfSide;
+      const std::uint32_t least = isSmallerThanOpening(localPolygon(side / 2)) ? 1 : pointsOfSide;
       firstPlace_.push_back(firstPlace_.back() + std::min(least + further, pointsOfSideMax));
     }
     places_.resize(firstPlace_.back());
@@ -392,18 +394,24 @@ bool isEmitter(const CleanModel& model, std::uint32_t piece) {
 std::vector<bool> joinAcrossInnerGlass(const CleanModel& model, std::vector<std::uint32_t>& air,
                                        std::uint32_t outside) {
   std::vector<bool> inner(model.pieces.size(), false);
+  std::map<std::uint32_t, std::uint32_t> joined;  // an air and the lower one that it has become a part of
+  const auto find = [&](std::uint32_t own) {
+    for (auto found = joined.find(own); found != joined.end(); found = joined.find(own)) own = found->second;
+    return own;
+  };
   for (std::uint32_t piece = 0; piece < model.pieces.size(); ++piece) {
     if (!isGlass(model, piece)) continue;
-    const std::uint32_t front = air[2 * piece];
-    const std::uint32_t back = air[2 * piece + 1];
-    if (front == nowhere || back == nowhere) {
+    if (air[2 * piece] == nowhere || air[2 * piece + 1] == nowhere) {
       inner[piece] = true;  // pressed between other surfaces
       continue;
     }
+    const std::uint32_t front = find(air[2 * piece]);
+    const std::uint32_t back = find(air[2 * piece + 1]);
     if ((front == outside) != (back == outside)) continue;
     inner[piece] = true;
-    if (front != back) std::replace(air.begin(), air.end(), std::max(front, back), std::min(front, back));
+    if (front != back) joined.emplace(std::max(front, back), std::min(front, back));
   }
+  for (std::uint32_t& own : air) own = find(own);
   return inner;
 }
 

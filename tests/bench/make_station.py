@@ -125,15 +125,12 @@ def draw_bench(model, x, y):
     for i in range(1, 3):
         a = math.pi * i / 2
         section.append((0.89 + 0.03 * math.cos(a), 0.88 + 0.03 * math.sin(a)))
-    for i in range(1, 6):
-        t = i / 5
-        section.append((0.86 + 0.55 * t, 0.88 - 0.5 * t - 0.35 * math.sin(math.pi * t) * (1 - t)))
-    section.append((1.58, 0.36))
+    section += [(0.85, 0.75), (0.86, 0.6), (0.89, 0.47), (0.96, 0.38), (1.1, 0.345), (1.35, 0.34), (1.58, 0.365)]
     skin(model, "bench", "wood", turned((x, y, 0.0), section, 24), closed=True)
     for i in range(4):
         a = 0.5 * math.pi * i
         place = (x + 1.3 * math.cos(a), y + 1.3 * math.sin(a), GAP_M)
-        leg = [(0.06, 0.0), (0.03, 0.05), (0.025, 0.2), (0.05, 0.33)]
+        leg = [(0.06, 0.0), (0.03, 0.05), (0.025, 0.2), (0.05, 0.31)]
         skin(model, "bench legs", "steel", turned(place, leg, 6), caps=True)
 
 
