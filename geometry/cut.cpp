@@ -117,11 +117,13 @@ std::vector<std::vector<glm::dvec3>> cutByAll(const std::vector<glm::dvec3>& who
   return parts;
 }
 
-/// Cuts each piece at the cutters that `cuttersOf` gives for it. The canonical order is kept.
+/// Cuts each piece at the cutters that `cuttersOf` gives for it. The canonical order is kept. Returns the
+/// piece that each of the new ones is a part of.
 template <class CuttersOf>
-void cutPieces(Pieces& pieces, const CuttersOf& cuttersOf) {
+std::vector<std::uint32_t> cutPieces(Pieces& pieces, const CuttersOf& cuttersOf) {
   Pieces result;
   result.points = pieces.points;
+  std::vector<std::uint32_t> wholeOf;
   for (std::uint32_t piece = 0; piece < pieces.size(); ++piece) {
     const auto keep = [&](std::span<const std::uint32_t> corners, double area_m2) {
       result.polygons.add(corners);
@@ -129,6 +131,7 @@ void cutPieces(Pieces& pieces, const CuttersOf& cuttersOf) {
       result.area_m2.push_back(area_m2);
       result.surface.push_back(pieces.surface[piece]);
       result.material.push_back(pieces.material[piece]);
+      wholeOf.push_back(piece);
     };
     std::vector<glm::dvec3> whole;
     for (const std::uint32_t corner : pieces.polygons[piece]) whole.push_back(pieces.points[corner]);
@@ -153,6 +156,7 @@ void cutPieces(Pieces& pieces, const CuttersOf& cuttersOf) {
     }
   }
   pieces = std::move(result);
+  return wholeOf;
 }
 
 }  // namespace
@@ -171,11 +175,11 @@ void cutAtPanes(Pieces& pieces, const std::vector<Material>& materials) {
   });
 }
 
-void cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs) {
+std::vector<std::uint32_t> cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs) {
   std::vector<Cutter> all;
   for (std::uint32_t piece = 0; piece < pieces.size(); ++piece)
     all.push_back(cutterOf(pieces, piece, wallReach_m));
-  cutPieces(pieces, [&](std::uint32_t piece) {
+  return cutPieces(pieces, [&](std::uint32_t piece) {
     std::vector<const Cutter*> cutters;
     if (!inTwoAirs[piece]) return cutters;
     for (std::uint32_t other = 0; other < all.size(); ++other) {

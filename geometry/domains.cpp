@@ -8,6 +8,8 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <optional>
+#include <span>
 
 #include <geometry/parallel.hpp>
 #include <geometry/sampling.hpp>
@@ -32,13 +34,35 @@ constexpr std::uint32_t nowhere = RayScene::Hit::none;
 /// A place over a side where the air is asked for.
 struct Place {
   glm::vec3 point, normal;
-  bool isFree;  ///< has clearance; others only follow
+  std::uint32_t side;
+  std::uint32_t key;  ///< of its rays' directions
+  bool isFree;        ///< has clearance; others only follow
 };
 
 /// What a ray of a place met.
 struct Meeting {
   std::uint32_t place = nowhere;  ///< that shares the air of the point met, or the outside
   float distance_m = 0.0F;
+};
+
+/// Sides of a model before and after some of its pieces were cut, as far as they are the same.
+struct SameSides {
+  std::vector<std::uint32_t> before;  ///< by side now; nowhere for parts
+  std::vector<std::uint32_t> now;     ///< by side before; nowhere for what was cut
+
+  /// `wholeOf`: the former piece that each piece is a part of, by rising numbers.
+  SameSides(std::span<const std::uint32_t> wholeOf, std::size_t piecesBefore)
+      : before(2 * wholeOf.size(), nowhere), now(2 * piecesBefore, nowhere) {
+    for (std::uint32_t piece = 0; piece < wholeOf.size(); ++piece) {
+      const std::uint32_t whole = wholeOf[piece];
+      const bool isPart = (piece > 0 && wholeOf[piece - 1] == whole) ||
+                          (piece + 1 < wholeOf.size() && wholeOf[piece + 1] == whole);
+      for (std::uint32_t back = 0; back < 2 && !isPart; ++back) {
+        before[2 * piece + back] = 2 * whole + back;
+        now[2 * whole + back] = 2 * piece + back;
+      }
+    }
+  }
 };
 
 /// Few candidates with their votes.
@@ -74,21 +98,14 @@ class Votes {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> counts_;
 };
 
-/// Asks for the air over all sides of a model. Loops over places or sides run on all threads, where each
-/// writes to its own entries alone.
+/// Asks for the air over all sides of a model. What was seen before some pieces were cut is seen again where
+/// those pieces are not concerned: cutting moves no surface. Loops over places or sides run on all threads,
+/// where each writes to its own entries alone.
 class AirSurvey {
  public:
-  AirSurvey(const CleanModel& model, const RayScene& rays) : pieces_(model.pieces), rays_(rays) {
-    placeAll();
-    parent_.resize(places_.size() + 1);
-    std::iota(parent_.begin(), parent_.end(), 0U);
-    outside_ = static_cast<std::uint32_t>(places_.size());
-    joinAlongSides();
-    lookAround();
-    joinAcrossAir();
-    measureAirs();
-    follow();
-  }
+  AirSurvey(const CleanModel& model, const RayScene& rays) : AirSurvey(model, rays, nullptr, nullptr) {}
+  AirSurvey(const CleanModel& model, const RayScene& rays, const AirSurvey& earlier, const SameSides& same)
+      : AirSurvey(model, rays, &earlier, &same) {}
 
   /// The air of most of a side's places, as a number below airLimit; nowhere if none is known.
   [[nodiscard]] std::uint32_t airOf(std::uint32_t side) const {
@@ -146,6 +163,20 @@ class AirSurvey {
   }
 
  private:
+  /// `earlier` and `same`: both or neither.
+  AirSurvey(const CleanModel& model, const RayScene& rays, const AirSurvey* earlier, const SameSides* same)
+      : pieces_(model.pieces), rays_(rays) {
+    placeAll(earlier, same);
+    parent_.resize(places_.size() + 1);
+    std::iota(parent_.begin(), parent_.end(), 0U);
+    outside_ = static_cast<std::uint32_t>(places_.size());
+    joinAlongSides();
+    lookAround(earlier, same);
+    joinAcrossAir();
+    measureAirs();
+    follow();
+  }
+
   [[nodiscard]] bool isSmall(std::uint32_t side) const {
     return firstPlace_[side + 1] - firstPlace_[side] == 1;
   }
@@ -199,30 +230,54 @@ class AirSurvey {
            !rays_.meetsAny(from, way / length_m, RayScene::Barrier::opaqueAndGlass, length_m);
   }
 
-  void placeAll() {
+  [[nodiscard]] std::uint32_t countPlaces(std::uint32_t side, double total_m2) const {
+    const double share = pieces_.area_m2[side / 2] / std::max(total_m2, 1e-9);
+    const auto further = static_cast<std::uint32_t>(pointsOfModel * share);
+    const std::uint32_t least = isSmallerThanOpening(localPolygon(side / 2)) ? 1 : pointsOfSide;
+    return std::min(least + further, pointsOfSideMax);
+  }
+
+  void placeAll(const AirSurvey* earlier, const SameSides* same) {
+    const auto sides = static_cast<std::uint32_t>(2 * pieces_.size());
+    const auto before = [&](std::uint32_t side) { return same != nullptr ? same->before[side] : nowhere; };
     const double total_m2 = std::accumulate(pieces_.area_m2.begin(), pieces_.area_m2.end(), 0.0);
     firstPlace_.push_back(0);
-    for (std::uint32_t side = 0; side < 2 * pieces_.size(); ++side) {
-      const double share = pieces_.area_m2[side / 2] / std::max(total_m2, 1e-9);
-      const auto further = static_cast<std::uint32_t>(pointsOfModel * share);
-      const std::uint32_t least = isSmallerThanOpening(localPolygon(side / 2)) ? 1 : pointsOfSide;
-      firstPlace_.push_back(firstPlace_.back() + std::min(least + further, pointsOfSideMax));
+    for (std::uint32_t side = 0; side < sides; ++side) {
+      const std::size_t count =
+          before(side) != nowhere ? earlier->placesOf(before(side)).size() : countPlaces(side, total_m2);
+      firstPlace_.push_back(firstPlace_.back() + static_cast<std::uint32_t>(count));
     }
     places_.resize(firstPlace_.back());
-    forEachIndex(2 * pieces_.size(), sidesOfTask, [&](std::size_t index) {
+    forEachIndex(sides, sidesOfTask, [&](std::size_t index) {
       const auto side = static_cast<std::uint32_t>(index);
-      const auto polygon = localPolygon(side / 2);
-      const glm::vec3 normal(side % 2 == 0 ? pieces_.normal[side / 2] : -pieces_.normal[side / 2]);
-      const Sequence sequence(mixKeys(0xd0, side));
-      const std::uint32_t count = firstPlace_[side + 1] - firstPlace_[side];
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const glm::vec3 point = count == 1
-                                    ? middleOf(polygon)
-                                    : pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1));
-        const glm::vec3 start = point + rayOffset_m * normal;
-        places_[firstPlace_[side] + i] = {start, normal, isOpen(start, point + clearance_m * normal)};
+      if (before(side) == nowhere) {
+        placeOver(side);
+        return;
+      }
+      const auto known = earlier->placesOf(before(side));
+      std::copy(known.begin(), known.end(), places_.begin() + firstPlace_[side]);
+      for (std::uint32_t place = firstPlace_[side]; place < firstPlace_[side + 1]; ++place) {
+        places_[place].side = side;
       }
     });
+  }
+
+  void placeOver(std::uint32_t side) {
+    const auto polygon = localPolygon(side / 2);
+    const glm::vec3 normal(side % 2 == 0 ? pieces_.normal[side / 2] : -pieces_.normal[side / 2]);
+    const Sequence sequence(mixKeys(0xd0, side));
+    const std::uint32_t count = firstPlace_[side + 1] - firstPlace_[side];
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const glm::vec3 point =
+          count == 1 ? middleOf(polygon) : pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1));
+      const glm::vec3 start = point + rayOffset_m * normal;
+      const std::uint32_t place = firstPlace_[side] + i;
+      places_[place] = {start, normal, side, place, isOpen(start, point + clearance_m * normal)};
+    }
+  }
+
+  [[nodiscard]] std::span<const Place> placesOf(std::uint32_t side) const {
+    return std::span(places_).subspan(firstPlace_[side], firstPlace_[side + 1] - firstPlace_[side]);
   }
 
   [[nodiscard]] glm::vec3 hover(std::uint32_t place) const {
@@ -280,18 +335,35 @@ class AirSurvey {
   }
 
   [[nodiscard]] glm::vec3 directionOf(std::uint32_t place, std::uint32_t ray) const {
-    const Sequence sequence(mixKeys(0xd1, place));
+    const Sequence sequence(mixKeys(0xd1, places_[place].key));
     return cosineDirection(places_[place].normal, sequence(ray, 0), sequence(ray, 1));
   }
 
-  void lookAround() {
+  void lookAround(const AirSurvey* earlier, const SameSides* same) {
     met_.resize(places_.size() * raysOfPoint);
-    forEachIndex(places_.size(), sidesOfTask, [&](std::size_t place) {
+    forEachIndex(places_.size(), sidesOfTask, [&](std::size_t index) {
+      const auto place = static_cast<std::uint32_t>(index);
+      const std::uint32_t side = places_[place].side;
+      const bool isKnown = same != nullptr && same->before[side] != nowhere;
       for (std::uint32_t ray = 0; ray < raysOfPoint; ++ray) {
-        met_[place * raysOfPoint + ray] =
-            look(places_[place].point, directionOf(static_cast<std::uint32_t>(place), ray));
+        Meeting& met = met_[index * raysOfPoint + ray];
+        if (isKnown) {
+          const std::uint32_t former = earlier->firstPlace_[same->before[side]] + place - firstPlace_[side];
+          met = seenAgain(*earlier, *same, earlier->met_[std::size_t{former} * raysOfPoint + ray]);
+        }
+        if (met.place == nowhere) met = look(places_[place].point, directionOf(place, ray));
       }
     });
+  }
+
+  /// What was met earlier, as a place of this survey; nowhere if it was on a piece that has been cut.
+  [[nodiscard]] Meeting seenAgain(const AirSurvey& earlier, const SameSides& same, const Meeting& met) const {
+    if (met.place == nowhere) return met;
+    if (met.place == earlier.outside_) return {outside_, met.distance_m};
+    const std::uint32_t formerSide = earlier.places_[met.place].side;
+    const std::uint32_t side = same.now[formerSide];
+    if (side == nowhere) return {};
+    return {firstPlace_[side] + met.place - earlier.firstPlace_[formerSide], met.distance_m};
   }
 
   /// Whether a bundle passes from a free place to what its ray met.
@@ -415,28 +487,29 @@ std::vector<bool> joinAcrossInnerGlass(const CleanModel& model, std::vector<std:
   return inner;
 }
 
-/// Cuts the pieces that stand in two airs at what meets them; tells whether there were any.
-bool cutAtBorders(CleanModel& model, const AirSurvey& survey) {
+/// Pieces that stand in two airs, for which they are worth cutting.
+std::vector<bool> piecesInTwoAirs(const CleanModel& model, const AirSurvey& survey) {
   std::vector<bool> inTwoAirs(model.pieces.size());
-  bool any = false;
   for (std::uint32_t piece = 0; piece < model.pieces.size(); ++piece) {
     inTwoAirs[piece] =
         !isGlass(model, piece) && (survey.isInTwoAirs(2 * piece) || survey.isInTwoAirs(2 * piece + 1));
-    any = any || inTwoAirs[piece];
   }
-  if (any) cutWhereMet(model.pieces, inTwoAirs);
-  return any;
+  return inTwoAirs;
 }
 
 }  // namespace
 
 void findDomains(Building& building) {
   CleanModel& model = building.model;
-  auto rays = std::make_unique<RayScene>(model, std::vector<bool>());
-  auto survey = std::make_unique<AirSurvey>(model, *rays);
-  if (cutAtBorders(model, *survey)) {
-    rays = std::make_unique<RayScene>(model, std::vector<bool>());
-    survey = std::make_unique<AirSurvey>(model, *rays);
+  const RayScene whole(model, {});
+  auto survey = std::make_unique<AirSurvey>(model, whole);
+  std::optional<RayScene> cut;
+  const std::vector<bool> inTwoAirs = piecesInTwoAirs(model, *survey);
+  if (std::find(inTwoAirs.begin(), inTwoAirs.end(), true) != inTwoAirs.end()) {
+    const std::size_t piecesBefore = model.pieces.size();
+    const SameSides same(cutWhereMet(model.pieces, inTwoAirs), piecesBefore);
+    cut.emplace(model, std::vector<bool>());
+    survey = std::make_unique<AirSurvey>(model, *cut, *survey, same);
   }
   std::vector<std::uint32_t> air(2 * model.pieces.size());
   for (std::uint32_t side = 0; side < air.size(); ++side) air[side] = survey->airOf(side);
