@@ -12,6 +12,7 @@
 #include <memory>
 #include <sstream>
 
+#include <geometry/parallel.hpp>
 #include <report/report.hpp>
 #include <solver/solution.hpp>
 
@@ -166,7 +167,8 @@ void runStudy(const StudyArguments& arguments) {
   for (const std::string& assumption : study.assumptions) {
     progress.line("assumed: " + assumption);
   }
-  const Building building = readBuilding(study, diagnoses, begin);
+  Building building;
+  withThreads(arguments.threads, [&] { building = readBuilding(study, diagnoses, begin); });
   showWarnings();
 
   clock.begin("solving");

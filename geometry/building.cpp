@@ -16,7 +16,6 @@ Building makeBuilding(CleanModel model, const Study& study) {
     throw InputError("the model has no surface left to light: it holds no polygon, or only degenerate ones");
   }
   cutAtPanes(building.model.pieces, building.model.materials);
-  cutAtBorders(building.model);
   findDomains(building);
   const RayScene rays(building.model, building.innerGlass);
   findRooms(building, rays);

@@ -102,14 +102,14 @@ double areaOf(const std::vector<glm::dvec3>& polygon) {
 }
 
 std::vector<std::vector<glm::dvec3>> cutByAll(const std::vector<glm::dvec3>& whole,
-                                              std::span<const Cutter> panes) {
+                                              std::span<const Cutter* const> cutters) {
   std::vector<std::vector<glm::dvec3>> parts{whole};
-  for (const Cutter& pane : panes) {
+  for (const Cutter* cutter : cutters) {
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      if (!mustBeCut(parts[i], pane)) continue;
-      Parts halves = partPolygon(parts[i], pane);
+      if (!mustBeCut(parts[i], *cutter)) continue;
+      Parts halves = partPolygon(parts[i], *cutter);
       if (halves.cut.size() < 2 || halves.front.size() < 3 || halves.back.size() < 3) continue;
-      if (overlap(pane, halves.cut.front(), halves.cut.back()) < overlapMin_m) continue;
+      if (overlap(*cutter, halves.cut.front(), halves.cut.back()) < overlapMin_m) continue;
       parts[i] = std::move(halves.front);
       parts.push_back(std::move(halves.back));
     }
@@ -117,11 +117,13 @@ std::vector<std::vector<glm::dvec3>> cutByAll(const std::vector<glm::dvec3>& who
   return parts;
 }
 
-/// Cuts each piece at the cutters that `cuttersOf` gives for it. The canonical order is kept.
+/// Cuts each piece at the cutters that `cuttersOf` gives for it. The canonical order is kept. Returns the
+/// piece that each of the new ones is a part of.
 template <class CuttersOf>
-void cutPieces(Pieces& pieces, const CuttersOf& cuttersOf) {
+std::vector<std::uint32_t> cutPieces(Pieces& pieces, const CuttersOf& cuttersOf) {
   Pieces result;
   result.points = pieces.points;
+  std::vector<std::uint32_t> wholeOf;
   for (std::uint32_t piece = 0; piece < pieces.size(); ++piece) {
     const auto keep = [&](std::span<const std::uint32_t> corners, double area_m2) {
       result.polygons.add(corners);
@@ -129,10 +131,11 @@ void cutPieces(Pieces& pieces, const CuttersOf& cuttersOf) {
       result.area_m2.push_back(area_m2);
       result.surface.push_back(pieces.surface[piece]);
       result.material.push_back(pieces.material[piece]);
+      wholeOf.push_back(piece);
     };
     std::vector<glm::dvec3> whole;
     for (const std::uint32_t corner : pieces.polygons[piece]) whole.push_back(pieces.points[corner]);
-    const std::vector<Cutter> cutters = cuttersOf(piece);
+    const std::vector<const Cutter*>& cutters = cuttersOf(piece);
     const auto parts = cutByAll(whole, cutters);
     if (parts.size() == 1) {
       keep(pieces.polygons[piece], pieces.area_m2[piece]);
@@ -153,6 +156,7 @@ void cutPieces(Pieces& pieces, const CuttersOf& cuttersOf) {
     }
   }
   pieces = std::move(result);
+  return wholeOf;
 }
 
 }  // namespace
@@ -163,23 +167,26 @@ void cutAtPanes(Pieces& pieces, const std::vector<Material>& materials) {
     if (materials[pieces.material[piece]].glazing) panes.push_back(cutterOf(pieces, piece, frameReach_m));
   }
   if (panes.empty()) return;
-  cutPieces(pieces, [&](std::uint32_t piece) {
-    return materials[pieces.material[piece]].glazing ? std::vector<Cutter>() : panes;
+  std::vector<const Cutter*> all;
+  for (const Cutter& pane : panes) all.push_back(&pane);
+  const std::vector<const Cutter*> none;
+  cutPieces(pieces, [&](std::uint32_t piece) -> const std::vector<const Cutter*>& {
+    return materials[pieces.material[piece]].glazing ? none : all;
   });
 }
 
-void cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs) {
+std::vector<std::uint32_t> cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs) {
   std::vector<Cutter> all;
   for (std::uint32_t piece = 0; piece < pieces.size(); ++piece)
     all.push_back(cutterOf(pieces, piece, wallReach_m));
-  cutPieces(pieces, [&](std::uint32_t piece) {
-    std::vector<Cutter> cutters;
+  return cutPieces(pieces, [&](std::uint32_t piece) {
+    std::vector<const Cutter*> cutters;
     if (!inTwoAirs[piece]) return cutters;
     for (std::uint32_t other = 0; other < all.size(); ++other) {
       const bool apart = glm::any(glm::lessThan(all[other].high, all[piece].low)) ||
                          glm::any(glm::lessThan(all[piece].high, all[other].low));
       const bool isParallel = std::abs(glm::dot(all[other].normal, all[piece].normal)) > 0.999;
-      if (other != piece && !apart && !isParallel) cutters.push_back(all[other]);
+      if (other != piece && !apart && !isParallel) cutters.push_back(&all[other]);
     }
     return cutters;
   });

@@ -11,7 +11,7 @@ namespace clerestory {
 void cutAtPanes(Pieces& pieces, const std::vector<Material>& materials);
 
 /// Splits the marked pieces (a floor that runs through under a wall, a post that stands in a slab) along the
-/// planes of all pieces that meet them.
-void cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs);
+/// planes of all pieces that meet them. Returns the piece that each of the new ones is a part of.
+std::vector<std::uint32_t> cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs);
 
 }  // namespace clerestory

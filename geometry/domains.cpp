@@ -6,8 +6,12 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <numeric>
+#include <optional>
+#include <span>
 
+#include <geometry/parallel.hpp>
 #include <geometry/sampling.hpp>
 
 #include "cut.hpp"
@@ -20,77 +24,132 @@ constexpr float bundle_m = 0.03F;        // half the width of the narrowest open
 constexpr double airMin_m2 = 0.5;        // surface of the smallest air that is one by itself
 constexpr double worthCutting_m2 = 3.0;  // surface of an air for which a side is cut at its border
 constexpr std::uint32_t raysOfPoint = 6;
-constexpr std::uint32_t pointsOfSide = 3;  // at least
+constexpr std::uint32_t pointsOfSide = 3;  // at least; one where a side is smaller than an opening
 constexpr double pointsOfModel = 4000.0;   // further ones, shared out by area
 constexpr std::uint32_t pointsOfSideMax = 256;
+constexpr std::uint32_t closerRays = 32;   // of a closer look
+constexpr std::uint32_t agreeingRays = 8;  // of these, where all agree with the side's points
 constexpr std::uint32_t nowhere = RayScene::Hit::none;
 
 /// A place over a side where the air is asked for.
 struct Place {
   glm::vec3 point, normal;
-  bool isFree;  ///< has clearance; others only follow
+  std::uint32_t side;
+  std::uint32_t key;  ///< of its rays' directions
+  bool isFree;        ///< has clearance; others only follow
 };
 
+/// What a ray of a place met.
+struct Meeting {
+  std::uint32_t place = nowhere;  ///< that shares the air of the point met, or the outside
+  float distance_m = 0.0F;
+};
+
+/// Sides of a model before and after some of its pieces were cut, as far as they are the same.
+struct SameSides {
+  std::vector<std::uint32_t> before;  ///< by side now; nowhere for parts
+  std::vector<std::uint32_t> now;     ///< by side before; nowhere for what was cut
+
+  /// `wholeOf`: the former piece that each piece is a part of, by rising numbers.
+  SameSides(std::span<const std::uint32_t> wholeOf, std::size_t piecesBefore)
+      : before(2 * wholeOf.size(), nowhere), now(2 * piecesBefore, nowhere) {
+    for (std::uint32_t piece = 0; piece < wholeOf.size(); ++piece) {
+      const std::uint32_t whole = wholeOf[piece];
+      const bool isPart = (piece > 0 && wholeOf[piece - 1] == whole) ||
+                          (piece + 1 < wholeOf.size() && wholeOf[piece + 1] == whole);
+      for (std::uint32_t back = 0; back < 2 && !isPart; ++back) {
+        before[2 * piece + back] = 2 * whole + back;
+        now[2 * whole + back] = 2 * piece + back;
+      }
+    }
+  }
+};
+
+/// Few candidates with their votes.
+class Votes {
+ public:
+  void add(std::uint32_t candidate) {
+    const auto found = std::find_if(counts_.begin(), counts_.end(),
+                                    [&](const auto& count) { return count.first == candidate; });
+    if (found != counts_.end()) {
+      ++found->second;
+    } else {
+      counts_.emplace_back(candidate, 1U);
+    }
+  }
+  /// The candidate with most votes, the lowest of equals; nowhere without votes.
+  [[nodiscard]] std::uint32_t most() const {
+    const auto found = std::max_element(counts_.begin(), counts_.end(), [](const auto& a, const auto& b) {
+      return a.second != b.second ? a.second < b.second : a.first > b.first;
+    });
+    return found == counts_.end() ? nowhere : found->first;
+  }
+  /// Whether `further` votes cannot change what has most.
+  [[nodiscard]] bool isDecided(std::uint32_t further) const {
+    const std::uint32_t leader = most();
+    std::uint32_t own = 0;
+    std::uint32_t second = 0;
+    for (const auto& [candidate, count] : counts_) (candidate == leader ? own : second) += count;
+    return own > second + further;
+  }
+  void clear() { counts_.clear(); }
+
+ private:
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> counts_;
+};
+
+/// Asks for the air over all sides of a model. What was seen before some pieces were cut is seen again where
+/// those pieces are not concerned: cutting moves no surface. Loops over places or sides run on all threads,
+/// where each writes to its own entries alone.
 class AirSurvey {
  public:
-  AirSurvey(const CleanModel& model, const RayScene& rays) : pieces_(model.pieces), rays_(rays) {
-    placeAll();
-    parent_.resize(places_.size() + 1);
-    std::iota(parent_.begin(), parent_.end(), 0U);
-    outside_ = static_cast<std::uint32_t>(places_.size());
-    joinAlongSides();
-    joinAcrossAir();
-    follow();
-  }
+  AirSurvey(const CleanModel& model, const RayScene& rays) : AirSurvey(model, rays, nullptr, nullptr) {}
+  AirSurvey(const CleanModel& model, const RayScene& rays, const AirSurvey& earlier, const SameSides& same)
+      : AirSurvey(model, rays, &earlier, &same) {}
 
-  /// The air of most of a side's places, as a number below airCount; nowhere if none is known.
-  [[nodiscard]] std::uint32_t airOf(std::uint32_t side) {
-    std::map<std::uint32_t, int> votes;
+  /// The air of most of a side's places, as a number below airLimit; nowhere if none is known.
+  [[nodiscard]] std::uint32_t airOf(std::uint32_t side) const {
+    Votes votes;
     for (std::uint32_t place = firstPlace_[side]; place < firstPlace_[side + 1]; ++place) {
-      if (known_[place]) ++votes[airAt(place)];
+      if (air_[place] != nowhere) votes.add(air_[place]);
     }
-    return mostVotes(votes);
+    return votes.most();
   }
-  [[nodiscard]] std::uint32_t outside() { return root(outside_); }
+  [[nodiscard]] std::uint32_t outside() const { return outside_; }
 
   /// Whether a side has places in two airs that are both worth cutting it for.
-  [[nodiscard]] bool isInTwoAirs(std::uint32_t side) {
+  [[nodiscard]] bool isInTwoAirs(std::uint32_t side) const {
     std::uint32_t first = nowhere;
     for (std::uint32_t place = firstPlace_[side]; place < firstPlace_[side + 1]; ++place) {
-      if (!places_[place].isFree || airArea_m2_[root(place)] < worthCutting_m2) continue;
-      if (first != nowhere && first != root(place)) return true;
-      first = root(place);
+      if (!places_[place].isFree || airArea_m2_[parent_[place]] < worthCutting_m2) continue;
+      if (first != nowhere && first != parent_[place]) return true;
+      first = parent_[place];
     }
     return false;
   }
 
-  /// Whether a side's places are too few to be sure of, or disagree about their air: a closer look decides.
-  [[nodiscard]] bool isInDoubt(std::uint32_t side) {
-    if (firstPlace_[side + 1] - firstPlace_[side] <= pointsOfSide + 1) return true;
-    std::uint32_t first = nowhere;
-    for (std::uint32_t place = firstPlace_[side]; place < firstPlace_[side + 1]; ++place) {
-      if (!known_[place]) continue;
-      if (first != nowhere && first != airAt(place)) return true;
-      first = airAt(place);
-    }
-    return false;
-  }
-
-  /// The air among `lit` that is met from somewhere on a side, by a closer look; nowhere if none is. Most of
-  /// a seat's upper face may lie under its cushion.
-  [[nodiscard]] std::uint32_t litAirOf(std::uint32_t side, const std::vector<bool>& lit) {
-    constexpr std::uint32_t count = 32;
+  /// The air that a side is given after a closer look (unless it is small): the one of those among `lit` that
+  /// is met most from it; `own` where none is. Most of a seat's upper face may lie under its cushion.
+  [[nodiscard]] std::uint32_t closerAirOf(std::uint32_t side, std::uint32_t own,
+                                          const std::vector<bool>& lit) const {
+    const bool isLit = own != nowhere && lit[own];
+    if (isSmall(side) || (isLit && !isInDoubt(side))) return own;
     const auto polygon = localPolygon(side / 2);
     const glm::vec3& normal = places_[firstPlace_[side]].normal;
     const Sequence sequence(mixKeys(0xd2, side));
-    std::map<std::uint32_t, int> votes;
-    for (std::uint32_t i = 0; i < count; ++i) {
+    Votes votes;
+    bool agree = isLit;
+    for (std::uint32_t i = 0; i < closerRays; ++i) {
+      if (votes.isDecided(closerRays - i) || (agree && i == agreeingRays)) break;
       const glm::vec3 start =
           pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1)) + rayOffset_m * normal;
-      const std::uint32_t other = placeMet(start, cosineDirection(normal, sequence(i, 2), sequence(i, 3)));
-      if (other != nowhere && known_[other] && lit[airAt(other)]) ++votes[airAt(other)];
+      const std::uint32_t other = look(start, cosineDirection(normal, sequence(i, 2), sequence(i, 3))).place;
+      const std::uint32_t met = other == nowhere ? nowhere : air_[other];
+      if (met != nowhere && lit[met]) votes.add(met);
+      agree = agree && met == own;
     }
-    return mostVotes(votes);
+    const std::uint32_t most = votes.most();
+    return most == nowhere ? own : most;
   }
   [[nodiscard]] std::size_t airLimit() const { return parent_.size(); }
 
@@ -99,16 +158,42 @@ class AirSurvey {
     double escaped = 0.0;
     const std::size_t first = std::size_t{firstPlace_[side]} * raysOfPoint;
     const std::size_t last = std::size_t{firstPlace_[side + 1]} * raysOfPoint;
-    for (std::size_t ray = first; ray < last; ++ray) escaped += met_[ray] == outside_ ? 1.0 : 0.0;
+    for (std::size_t ray = first; ray < last; ++ray) escaped += met_[ray].place == outside_ ? 1.0 : 0.0;
     return escaped / static_cast<double>(last - first);
   }
 
  private:
-  static std::uint32_t mostVotes(const std::map<std::uint32_t, int>& votes) {
-    const auto most = std::max_element(votes.begin(), votes.end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-    return most == votes.end() ? nowhere : most->first;
+  /// `earlier` and `same`: both or neither.
+  AirSurvey(const CleanModel& model, const RayScene& rays, const AirSurvey* earlier, const SameSides* same)
+      : pieces_(model.pieces), rays_(rays) {
+    placeAll(earlier, same);
+    parent_.resize(places_.size() + 1);
+    std::iota(parent_.begin(), parent_.end(), 0U);
+    outside_ = static_cast<std::uint32_t>(places_.size());
+    joinAlongSides();
+    lookAround(earlier, same);
+    joinAcrossAir();
+    measureAirs();
+    follow();
   }
+
+  [[nodiscard]] bool isSmall(std::uint32_t side) const {
+    return firstPlace_[side + 1] - firstPlace_[side] == 1;
+  }
+
+  /// Whether a side's places are too few to be sure of, or disagree about their air: a closer look decides.
+  [[nodiscard]] bool isInDoubt(std::uint32_t side) const {
+    const std::uint32_t count = firstPlace_[side + 1] - firstPlace_[side];
+    if (count <= pointsOfSide + 1) return true;
+    std::uint32_t first = nowhere;
+    for (std::uint32_t place = firstPlace_[side]; place < firstPlace_[side + 1]; ++place) {
+      if (air_[place] == nowhere) continue;
+      if (first != nowhere && first != air_[place]) return true;
+      first = air_[place];
+    }
+    return false;
+  }
+
   [[nodiscard]] std::vector<glm::vec3> localPolygon(std::uint32_t piece) const {
     std::vector<glm::vec3> polygon;
     for (const std::uint32_t corner : pieces_.polygons[piece]) {
@@ -116,11 +201,23 @@ class AirSurvey {
     }
     return polygon;
   }
+
+  static glm::vec3 middleOf(const std::vector<glm::vec3>& polygon) {
+    return std::accumulate(polygon.begin(), polygon.end(), glm::vec3(0.0F)) /
+           static_cast<float>(polygon.size());
+  }
+
+  /// Whether a polygon has no room for two airs that something could fly between.
+  static bool isSmallerThanOpening(const std::vector<glm::vec3>& polygon) {
+    return std::ranges::all_of(polygon, [&](const glm::vec3& corner) {
+      return glm::distance(corner, polygon[0]) < 2.0F * bundle_m;
+    });
+  }
+
   std::uint32_t root(std::uint32_t place) {
     while (parent_[place] != place) place = parent_[place] = parent_[parent_[place]];
     return place;
   }
-  std::uint32_t airAt(std::uint32_t place) { return air_[place] != nowhere ? air_[place] : root(place); }
   void join(std::uint32_t a, std::uint32_t b) {
     a = root(a);
     b = root(b);
@@ -130,26 +227,57 @@ class AirSurvey {
     const glm::vec3 way = to - from;
     const float length_m = glm::length(way);
     return length_m < 1e-6F ||
-           !rays_.nearest(from, way / length_m, RayScene::Barrier::opaqueAndGlass, length_m);
+           !rays_.meetsAny(from, way / length_m, RayScene::Barrier::opaqueAndGlass, length_m);
   }
 
-  void placeAll() {
+  [[nodiscard]] std::uint32_t countPlaces(std::uint32_t side, double total_m2) const {
+    const double share = pieces_.area_m2[side / 2] / std::max(total_m2, 1e-9);
+    const auto further = static_cast<std::uint32_t>(pointsOfModel * share);
+    const std::uint32_t least = isSmallerThanOpening(localPolygon(side / 2)) ? 1 : pointsOfSide;
+    return std::min(least + further, pointsOfSideMax);
+  }
+
+  void placeAll(const AirSurvey* earlier, const SameSides* same) {
+    const auto sides = static_cast<std::uint32_t>(2 * pieces_.size());
+    const auto before = [&](std::uint32_t side) { return same != nullptr ? same->before[side] : nowhere; };
     const double total_m2 = std::accumulate(pieces_.area_m2.begin(), pieces_.area_m2.end(), 0.0);
     firstPlace_.push_back(0);
-    for (std::uint32_t side = 0; side < 2 * pieces_.size(); ++side) {
-      const auto polygon = localPolygon(side / 2);
-      const glm::vec3 normal(side % 2 == 0 ? pieces_.normal[side / 2] : -pieces_.normal[side / 2]);
-      const double share = pieces_.area_m2[side / 2] / std::max(total_m2, 1e-9);
-      const auto count =
-          std::min(pointsOfSide + static_cast<std::uint32_t>(pointsOfModel * share), pointsOfSideMax);
-      const Sequence sequence(mixKeys(0xd0, side));
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const glm::vec3 point = pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1));
-        const glm::vec3 start = point + rayOffset_m * normal;
-        places_.push_back({start, normal, isOpen(start, point + clearance_m * normal)});
-      }
-      firstPlace_.push_back(static_cast<std::uint32_t>(places_.size()));
+    for (std::uint32_t side = 0; side < sides; ++side) {
+      const std::size_t count =
+          before(side) != nowhere ? earlier->placesOf(before(side)).size() : countPlaces(side, total_m2);
+      firstPlace_.push_back(firstPlace_.back() + static_cast<std::uint32_t>(count));
     }
+    places_.resize(firstPlace_.back());
+    forEachIndex(sides, sidesOfTask, [&](std::size_t index) {
+      const auto side = static_cast<std::uint32_t>(index);
+      if (before(side) == nowhere) {
+        placeOver(side);
+        return;
+      }
+      const auto known = earlier->placesOf(before(side));
+      std::copy(known.begin(), known.end(), places_.begin() + firstPlace_[side]);
+      for (std::uint32_t place = firstPlace_[side]; place < firstPlace_[side + 1]; ++place) {
+        places_[place].side = side;
+      }
+    });
+  }
+
+  void placeOver(std::uint32_t side) {
+    const auto polygon = localPolygon(side / 2);
+    const glm::vec3 normal(side % 2 == 0 ? pieces_.normal[side / 2] : -pieces_.normal[side / 2]);
+    const Sequence sequence(mixKeys(0xd0, side));
+    const std::uint32_t count = firstPlace_[side + 1] - firstPlace_[side];
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const glm::vec3 point =
+          count == 1 ? middleOf(polygon) : pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1));
+      const glm::vec3 start = point + rayOffset_m * normal;
+      const std::uint32_t place = firstPlace_[side] + i;
+      places_[place] = {start, normal, side, place, isOpen(start, point + clearance_m * normal)};
+    }
+  }
+
+  [[nodiscard]] std::span<const Place> placesOf(std::uint32_t side) const {
+    return std::span(places_).subspan(firstPlace_[side], firstPlace_[side + 1] - firstPlace_[side]);
   }
 
   [[nodiscard]] glm::vec3 hover(std::uint32_t place) const {
@@ -170,15 +298,16 @@ class AirSurvey {
     return true;
   }
 
+  /// Comes before all other joins: a side's places have roots among themselves.
   void joinAlongSides() {
-    for (std::uint32_t side = 0; side + 1 < firstPlace_.size(); ++side) {
+    forEachIndex(firstPlace_.size() - 1, sidesOfTask, [&](std::size_t side) {
       for (std::uint32_t a = firstPlace_[side]; a < firstPlace_[side + 1]; ++a) {
         for (std::uint32_t b = firstPlace_[side]; b < a; ++b) {
           if (!places_[a].isFree || !places_[b].isFree || root(a) == root(b)) continue;
           if (isOpen(hover(a), hover(b))) join(a, b);
         }
       }
-    }
+    });
   }
 
   /// The place of `side` that shares the air of a point on it; nowhere if the way to each is barred.
@@ -196,100 +325,132 @@ class AirSurvey {
     return best;
   }
 
-  void joinAcrossAir() {
-    met_.reserve(places_.size() * raysOfPoint);
-    for (std::uint32_t place = 0; place < places_.size(); ++place) {
-      const Place& own = places_[place];
-      const Sequence sequence(mixKeys(0xd1, place));
-      for (std::uint32_t i = 0; i < raysOfPoint; ++i) {
-        const glm::vec3 direction = cosineDirection(own.normal, sequence(i, 0), sequence(i, 1));
-        met_.push_back(meet(place, direction));
-      }
-    }
-  }
-
   /// The place, or the outside, whose air a ray finds.
-  [[nodiscard]] std::uint32_t placeMet(const glm::vec3& from, const glm::vec3& direction) const {
+  [[nodiscard]] Meeting look(const glm::vec3& from, const glm::vec3& direction) const {
     const auto hit = rays_.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
-    if (!hit) return outside_;
+    if (!hit) return {outside_, hit.distance_m};
     const glm::vec3 normal(hit.front ? pieces_.normal[hit.piece] : -pieces_.normal[hit.piece]);
-    return placeNear(hit.side(), from + hit.distance_m * direction + rayOffset_m * normal,
-                     0.2F * clearance_m);
+    const glm::vec3 point = from + hit.distance_m * direction + rayOffset_m * normal;
+    return {placeNear(hit.side(), point, 0.2F * clearance_m), hit.distance_m};
   }
 
-  /// Sends a ray; returns the place, or the outside, whose air it found, and joins that air where a bundle
-  /// passes.
-  std::uint32_t meet(std::uint32_t place, const glm::vec3& direction) {
-    const Place& own = places_[place];
-    const auto hit = rays_.nearest(own.point, direction, RayScene::Barrier::opaqueAndGlass);
-    if (!hit) {
-      if (own.isFree && root(place) != root(outside_) &&
-          isOpenWide(hover(place), hover(place) + 1e4F * direction)) {
-        join(place, outside_);
+  [[nodiscard]] glm::vec3 directionOf(std::uint32_t place, std::uint32_t ray) const {
+    const Sequence sequence(mixKeys(0xd1, places_[place].key));
+    return cosineDirection(places_[place].normal, sequence(ray, 0), sequence(ray, 1));
+  }
+
+  void lookAround(const AirSurvey* earlier, const SameSides* same) {
+    met_.resize(places_.size() * raysOfPoint);
+    forEachIndex(places_.size(), sidesOfTask, [&](std::size_t index) {
+      const auto place = static_cast<std::uint32_t>(index);
+      const std::uint32_t side = places_[place].side;
+      const bool isKnown = same != nullptr && same->before[side] != nowhere;
+      for (std::uint32_t ray = 0; ray < raysOfPoint; ++ray) {
+        Meeting& met = met_[index * raysOfPoint + ray];
+        if (isKnown) {
+          const std::uint32_t former = earlier->firstPlace_[same->before[side]] + place - firstPlace_[side];
+          met = seenAgain(*earlier, *same, earlier->met_[std::size_t{former} * raysOfPoint + ray]);
+        }
+        if (met.place == nowhere) met = look(places_[place].point, directionOf(place, ray));
       }
-      return outside_;
-    }
-    const glm::vec3 normal(hit.front ? pieces_.normal[hit.piece] : -pieces_.normal[hit.piece]);
-    const glm::vec3 point = own.point + hit.distance_m * direction + rayOffset_m * normal;
-    const std::uint32_t other = placeNear(hit.side(), point, 0.2F * clearance_m);
-    if (other == nowhere || !own.isFree || root(place) == root(other)) return other;
-    const glm::vec3 above = point + 0.9F * clearance_m * normal;
-    if (places_[other].isFree && isOpen(point, above) && isOpen(above, hover(other)) &&
-        isOpenWide(hover(place), above)) {
-      join(place, other);
-    }
-    return other;
+    });
   }
 
-  /// Airs of too little surface are none: a rug's edge is free, but too low for a bundle to pass to it.
-  void findKnown() {
-    std::vector<double>& area_m2 = airArea_m2_;
-    area_m2.assign(places_.size() + 1, 0.0);
+  /// What was met earlier, as a place of this survey; nowhere if it was on a piece that has been cut.
+  [[nodiscard]] Meeting seenAgain(const AirSurvey& earlier, const SameSides& same, const Meeting& met) const {
+    if (met.place == nowhere) return met;
+    if (met.place == earlier.outside_) return {outside_, met.distance_m};
+    const std::uint32_t formerSide = earlier.places_[met.place].side;
+    const std::uint32_t side = same.now[formerSide];
+    if (side == nowhere) return {};
+    return {firstPlace_[side] + met.place - earlier.firstPlace_[formerSide], met.distance_m};
+  }
+
+  /// Whether a bundle passes from a free place to what its ray met.
+  [[nodiscard]] bool bundlePasses(std::uint32_t place, std::uint32_t ray) const {
+    const Meeting& met = met_[std::size_t{place} * raysOfPoint + ray];
+    const glm::vec3 direction = directionOf(place, ray);
+    if (met.place == outside_) return isOpenWide(hover(place), hover(place) + 1e4F * direction);
+    const Place& other = places_[met.place];
+    if (!other.isFree) return false;
+    const glm::vec3 point = places_[place].point + met.distance_m * direction + rayOffset_m * other.normal;
+    const glm::vec3 above = point + 0.9F * clearance_m * other.normal;
+    return isOpen(point, above) && isOpen(above, hover(met.place)) && isOpenWide(hover(place), above);
+  }
+
+  /// Joins the airs that bundles pass between. Which of them are tried first does not matter: one ray of
+  /// each place is tried on all threads, the others where airs are still apart.
+  void joinAcrossAir() {
+    std::vector<std::uint8_t> passing(places_.size(), raysOfPoint);  // the first ray that a bundle follows
+    forEachIndex(places_.size(), sidesOfTask, [&](std::size_t index) {
+      const auto place = static_cast<std::uint32_t>(index);
+      if (!places_[place].isFree) return;
+      for (std::uint8_t ray = 0; ray < raysOfPoint && passing[place] == raysOfPoint; ++ray) {
+        const std::uint32_t other = met_[index * raysOfPoint + ray].place;
+        if (other != nowhere && bundlePasses(place, ray)) passing[place] = ray;
+      }
+    });
+    for (std::uint32_t place = 0; place < places_.size(); ++place) {
+      if (passing[place] < raysOfPoint) {
+        join(place, met_[std::size_t{place} * raysOfPoint + passing[place]].place);
+      }
+    }
+    for (std::uint32_t place = 0; place < places_.size(); ++place) {
+      for (std::uint32_t ray = passing[place] + 1U; ray < raysOfPoint; ++ray) {
+        const std::uint32_t other = met_[std::size_t{place} * raysOfPoint + ray].place;
+        if (other == nowhere || root(place) == root(other)) continue;
+        if (bundlePasses(place, ray)) join(place, other);
+      }
+    }
+    for (std::uint32_t place = 0; place < parent_.size(); ++place) parent_[place] = root(place);
+  }
+
+  /// Surface of each air: its free places' shares of their sides.
+  void measureAirs() {
+    airArea_m2_.assign(places_.size() + 1, 0.0);
     for (std::uint32_t side = 0; side + 1 < firstPlace_.size(); ++side) {
       const double share_m2 = pieces_.area_m2[side / 2] / (firstPlace_[side + 1] - firstPlace_[side]);
       for (std::uint32_t place = firstPlace_[side]; place < firstPlace_[side + 1]; ++place) {
-        if (places_[place].isFree) area_m2[root(place)] += share_m2;
+        if (places_[place].isFree) airArea_m2_[parent_[place]] += share_m2;
       }
     }
-    known_.assign(places_.size() + 1, false);
-    for (std::uint32_t place = 0; place < places_.size(); ++place) {
-      known_[place] =
-          places_[place].isFree && (root(place) == root(outside_) || area_m2[root(place)] >= airMin_m2);
-    }
-    known_[outside_] = true;
   }
 
-  /// Other places take the air of most of what their rays met, as it becomes known.
+  /// Free places know their air, unless it has too little surface to be one: a rug's edge is free, but too
+  /// low for a bundle to pass to it. Other places take the air of most of what their rays met, as it becomes
+  /// known.
   void follow() {
-    findKnown();
     air_.assign(places_.size() + 1, nowhere);
+    air_[outside_] = outside_;
+    for (std::uint32_t place = 0; place < places_.size(); ++place) {
+      if (!places_[place].isFree) continue;
+      const std::uint32_t air = parent_[place];
+      if (air == outside_ || airArea_m2_[air] >= airMin_m2) air_[place] = air;
+    }
     for (int round = 0; round < 4; ++round) {
-      std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
-      for (std::uint32_t place = 0; place < places_.size(); ++place) {
-        if (known_[place]) continue;
-        std::map<std::uint32_t, int> votes;
-        for (std::uint32_t i = 0; i < raysOfPoint; ++i) {
-          const std::uint32_t other = met_[std::size_t{place} * raysOfPoint + i];
-          if (other != nowhere && known_[other]) ++votes[airAt(other)];
+      std::vector<std::uint32_t> next = air_;
+      forEachIndex(places_.size(), sidesOfTask, [&](std::size_t place) {
+        if (air_[place] != nowhere) return;
+        Votes votes;
+        for (std::uint32_t ray = 0; ray < raysOfPoint; ++ray) {
+          const std::uint32_t other = met_[place * raysOfPoint + ray].place;
+          if (other != nowhere && air_[other] != nowhere) votes.add(air_[other]);
         }
-        if (const std::uint32_t most = mostVotes(votes); most != nowhere) found.emplace_back(place, most);
-      }
-      for (const auto& [place, air] : found) {
-        known_[place] = true;
-        air_[place] = air;
-      }
+        next[place] = votes.most();
+      });
+      air_ = std::move(next);
     }
   }
 
+  static constexpr std::size_t sidesOfTask = 64;  ///< or places
   const Pieces& pieces_;
   const RayScene& rays_;
   std::vector<Place> places_;
   std::vector<std::uint32_t> firstPlace_;  // #sides + 1
-  std::vector<std::uint32_t> met_;         // #places × raysOfPoint: place, outside or nowhere
-  std::vector<std::uint32_t> parent_;      // union-find over places and the outside
-  std::vector<bool> known_;
-  std::vector<std::uint32_t> air_;  // of places that follow
-  std::vector<double> airArea_m2_;  // by root
+  std::vector<Meeting> met_;               // #places × raysOfPoint
+  std::vector<std::uint32_t> parent_;      // union-find over places and the outside; in the end roots
+  std::vector<std::uint32_t> air_;         // #places + 1: nowhere where it is not known
+  std::vector<double> airArea_m2_;         // by root
   std::uint32_t outside_ = 0;
 };
 
@@ -305,55 +466,63 @@ bool isEmitter(const CleanModel& model, std::uint32_t piece) {
 std::vector<bool> joinAcrossInnerGlass(const CleanModel& model, std::vector<std::uint32_t>& air,
                                        std::uint32_t outside) {
   std::vector<bool> inner(model.pieces.size(), false);
+  std::map<std::uint32_t, std::uint32_t> joined;  // an air and the lower one that it has become a part of
+  const auto find = [&](std::uint32_t own) {
+    for (auto found = joined.find(own); found != joined.end(); found = joined.find(own)) own = found->second;
+    return own;
+  };
   for (std::uint32_t piece = 0; piece < model.pieces.size(); ++piece) {
     if (!isGlass(model, piece)) continue;
-    const std::uint32_t front = air[2 * piece];
-    const std::uint32_t back = air[2 * piece + 1];
-    if (front == nowhere || back == nowhere) {
+    if (air[2 * piece] == nowhere || air[2 * piece + 1] == nowhere) {
       inner[piece] = true;  // pressed between other surfaces
       continue;
     }
+    const std::uint32_t front = find(air[2 * piece]);
+    const std::uint32_t back = find(air[2 * piece + 1]);
     if ((front == outside) != (back == outside)) continue;
     inner[piece] = true;
-    if (front != back) std::replace(air.begin(), air.end(), std::max(front, back), std::min(front, back));
+    if (front != back) joined.emplace(std::max(front, back), std::min(front, back));
   }
+  for (std::uint32_t& own : air) own = find(own);
   return inner;
+}
+
+/// Pieces that stand in two airs, for which they are worth cutting.
+std::vector<bool> piecesInTwoAirs(const CleanModel& model, const AirSurvey& survey) {
+  std::vector<bool> inTwoAirs(model.pieces.size());
+  for (std::uint32_t piece = 0; piece < model.pieces.size(); ++piece) {
+    inTwoAirs[piece] =
+        !isGlass(model, piece) && (survey.isInTwoAirs(2 * piece) || survey.isInTwoAirs(2 * piece + 1));
+  }
+  return inTwoAirs;
 }
 
 }  // namespace
 
-bool cutAtBorders(CleanModel& model) {
-  const RayScene rays(model, {});
-  AirSurvey survey(model, rays);
-  std::vector<bool> inTwoAirs(model.pieces.size());
-  bool any = false;
-  for (std::uint32_t piece = 0; piece < model.pieces.size(); ++piece) {
-    inTwoAirs[piece] =
-        !isGlass(model, piece) && (survey.isInTwoAirs(2 * piece) || survey.isInTwoAirs(2 * piece + 1));
-    any = any || inTwoAirs[piece];
-  }
-  if (any) cutWhereMet(model.pieces, inTwoAirs);
-  return any;
-}
-
 void findDomains(Building& building) {
-  const CleanModel& model = building.model;
-  const RayScene rays(model, {});
-  AirSurvey survey(model, rays);
+  CleanModel& model = building.model;
+  const RayScene whole(model, {});
+  auto survey = std::make_unique<AirSurvey>(model, whole);
+  std::optional<RayScene> cut;
+  const std::vector<bool> inTwoAirs = piecesInTwoAirs(model, *survey);
+  if (std::find(inTwoAirs.begin(), inTwoAirs.end(), true) != inTwoAirs.end()) {
+    const std::size_t piecesBefore = model.pieces.size();
+    const SameSides same(cutWhereMet(model.pieces, inTwoAirs), piecesBefore);
+    cut.emplace(model, std::vector<bool>());
+    survey = std::make_unique<AirSurvey>(model, *cut, *survey, same);
+  }
   std::vector<std::uint32_t> air(2 * model.pieces.size());
-  for (std::uint32_t side = 0; side < air.size(); ++side) air[side] = survey.airOf(side);
-  const std::uint32_t outside = survey.outside();
-  std::vector<bool> lit(survey.airLimit(), false);
+  for (std::uint32_t side = 0; side < air.size(); ++side) air[side] = survey->airOf(side);
+  const std::uint32_t outside = survey->outside();
+  std::vector<bool> lit(survey->airLimit(), false);
   lit[outside] = true;
   for (std::uint32_t side = 0; side < air.size(); ++side) {
     const bool brings = isGlass(model, side / 2) || isEmitter(model, side / 2);
     if (brings && air[side] != nowhere) lit[air[side]] = true;
   }
-  for (std::uint32_t side = 0; side < air.size(); ++side) {
-    if (air[side] != nowhere && lit[air[side]] && !survey.isInDoubt(side)) continue;
-    const std::uint32_t met = survey.litAirOf(side, lit);
-    if (met != nowhere) air[side] = met;
-  }
+  forEachIndex(air.size(), 64, [&](std::size_t side) {
+    air[side] = survey->closerAirOf(static_cast<std::uint32_t>(side), air[side], lit);
+  });
   building.innerGlass = joinAcrossInnerGlass(model, air, outside);
 
   // Domains are numbered by their first side, the outside first.
@@ -371,7 +540,7 @@ void findDomains(Building& building) {
     Domain& domain = building.domains[static_cast<std::size_t>(building.sideDomain[side])];
     domain.open = air[side] == outside;
     domain.area_m2 += model.pieces.area_m2[side / 2];
-    domain.escape_m2 += model.pieces.area_m2[side / 2] * survey.escapedShare(side);
+    domain.escape_m2 += model.pieces.area_m2[side / 2] * survey->escapedShare(side);
     domain.lit = domain.lit || domain.open || isEmitter(model, side / 2);
   }
 

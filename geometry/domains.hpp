@@ -8,10 +8,8 @@
 namespace clerestory {
 
 /// Fills sideDomain, domains, portals and innerGlass of `building` from its model. Two places share the same
-/// air where something 6 cm wide could fly from one to the other; a narrower gap counts as closed.
+/// air where something 6 cm wide could fly from one to the other; a narrower gap counts as closed. Pieces
+/// that stand in two airs are cut at what meets them.
 void findDomains(Building& building);
-
-/// Cuts the pieces that stand in two airs at what meets them; tells whether there were any.
-bool cutAtBorders(CleanModel& model);
 
 }  // namespace clerestory

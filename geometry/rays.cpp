@@ -90,6 +90,12 @@ struct RayScene::Embree {
   [[nodiscard]] const TriangleScene& of(Barrier barrier) const {
     return barrier == Barrier::opaque ? opaque : barriers;
   }
+  [[nodiscard]] bool stops(RTCRay ray, Barrier barrier) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(of(barrier).scene.get(), &context, &ray);
+    return ray.tfar < 0.0F;
+  }
 };
 
 RayScene::RayScene(const CleanModel& model, const std::vector<bool>& innerGlass)
@@ -150,15 +156,16 @@ RayScene::Hit RayScene::nearest(const glm::vec3& from, const glm::vec3& directio
   return hit;
 }
 
+bool RayScene::meetsAny(const glm::vec3& from, const glm::vec3& direction, Barrier barrier,
+                        float limit_m) const {
+  return embree_->stops(makeRay(from, direction, 0.0F, limit_m), barrier);
+}
+
 bool RayScene::occluded(const glm::vec3& from, const glm::vec3& to, Barrier barrier) const {
   const glm::vec3 span = to - from;
   const float length_m = glm::length(span);
   if (length_m <= 2.0F * rayOffset_m) return false;
-  RTCRay ray = makeRay(from, span / length_m, rayOffset_m, length_m - rayOffset_m);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(embree_->of(barrier).scene.get(), &context, &ray);
-  return ray.tfar < 0.0F;
+  return embree_->stops(makeRay(from, span / length_m, rayOffset_m, length_m - rayOffset_m), barrier);
 }
 
 void RayScene::occluded(std::span<const Segment> segments, Barrier barrier,

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <span>
 
 #include <geometry/sampling.hpp>
 
@@ -52,42 +53,66 @@ double headroomShare(const Pieces& pieces, const RayScene& rays, std::uint32_t p
   return static_cast<double>(high) / count;
 }
 
+/// Treads of about one height.
+struct Level {
+  std::span<const Tread> treads;
+  double area_m2 = 0.0;
+};
+
+/// Levels by falling area, the lower of equals first.
+std::vector<Level> levelsOf(const Pieces& pieces, std::span<const Tread> byHeight) {
+  std::vector<Level> levels;
+  for (std::size_t first = 0; first < byHeight.size();) {
+    Level level;
+    std::size_t last = first;
+    for (; last < byHeight.size() && byHeight[last].height_m - byHeight[first].height_m <= levelTolerance_m;
+         ++last) {
+      level.area_m2 += pieces.area_m2[byHeight[last].piece];
+    }
+    level.treads = byHeight.subspan(first, last - first);
+    levels.push_back(level);
+    first = last;
+  }
+  std::stable_sort(levels.begin(), levels.end(),
+                   [](const Level& a, const Level& b) { return a.area_m2 > b.area_m2; });
+  return levels;
+}
+
 /// The level of the largest area among the lower half of what can be stood on.
 /// A level counts by the area with headroom, which is a quarter of a room's floor at least; the rest may
 /// stand under tables and shelves.
 void chooseFloor(const Pieces& pieces, const RayScene& rays, std::vector<Tread> treads, double low_m,
                  double high_m, Room& room) {
   std::erase_if(treads, [&](const Tread& tread) { return tread.height_m > 0.5 * (low_m + high_m); });
-  double mostHigh_m2 = 0.0;
   std::stable_sort(treads.begin(), treads.end(),
                    [](const Tread& a, const Tread& b) { return a.height_m < b.height_m; });
-  for (std::size_t first = 0; first < treads.size();) {
-    std::size_t last = first;
-    double area_m2 = 0.0;
-    double high_m2 = 0.0;
+  double mostHigh_m2 = 0.0;
+  for (const Level& level : levelsOf(pieces, treads)) {
+    if (level.area_m2 <= mostHigh_m2) break;  // neither this one nor those after it can have more
     std::map<std::uint32_t, double> areaOfSurface_m2;
     std::map<std::uint32_t, double> highOfSurface_m2;
-    std::vector<std::uint32_t> level;
-    for (; last < treads.size() && treads[last].height_m - treads[first].height_m <= levelTolerance_m;
-         ++last) {
-      const std::uint32_t piece = treads[last].piece;
+    std::vector<std::uint32_t> floor;
+    for (const auto& [piece, height_m] : level.treads) {
       areaOfSurface_m2[pieces.surface[piece]] += pieces.area_m2[piece];
       highOfSurface_m2[pieces.surface[piece]] += headroomShare(pieces, rays, piece) * pieces.area_m2[piece];
-      level.push_back(piece);
+      floor.push_back(piece);
     }
     // A surface that is hardly stood on is no floor: the hollow of a rug, the bottom of a bookcase.
-    std::erase_if(level, [&](std::uint32_t piece) {
+    std::erase_if(floor, [&](std::uint32_t piece) {
       return 5.0 * highOfSurface_m2[pieces.surface[piece]] < areaOfSurface_m2[pieces.surface[piece]];
     });
-    for (const std::uint32_t piece : level) area_m2 += pieces.area_m2[piece];
+    double area_m2 = 0.0;
+    double high_m2 = 0.0;
+    for (const std::uint32_t piece : floor) area_m2 += pieces.area_m2[piece];
     for (const auto& [surface, high] : highOfSurface_m2) high_m2 += high;
-    if (high_m2 > mostHigh_m2 && 4.0 * high_m2 >= area_m2) {
+    const double height_m = level.treads.front().height_m;
+    const bool isMore = high_m2 > mostHigh_m2 || (high_m2 == mostHigh_m2 && height_m < room.floor_m);
+    if (high_m2 > 0.0 && isMore && 4.0 * high_m2 >= area_m2) {
       mostHigh_m2 = high_m2;
       room.floorArea_m2 = area_m2;
-      room.floor_m = treads[first].height_m;
-      room.floorPieces = std::move(level);
+      room.floor_m = height_m;
+      room.floorPieces = std::move(floor);
     }
-    first = last;
   }
 }
 

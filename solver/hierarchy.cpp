@@ -59,61 +59,100 @@ void measure(ElementShape& shape) {
   }
 }
 
-/// Where to part sides[first … last), sorted along the axis of the cheapest cut. Ties keep the canonical
-/// order.
-std::size_t partSides(std::vector<std::uint32_t>& order, std::size_t first, std::size_t last,
-                      const std::vector<Box>& boxes) {
-  const std::size_t count = last - first;
-  std::vector<float> right(count);
-  float bestCost = std::numeric_limits<float>::infinity();
-  std::size_t bestCut = first + count / 2;
-  std::vector<std::uint32_t> best;
-  std::vector<std::uint32_t> sorted(order.begin() + static_cast<std::ptrdiff_t>(first),
-                                    order.begin() + static_cast<std::ptrdiff_t>(last));
-  for (int axis = 0; axis < 3; ++axis) {
-    std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
-      const float x = boxes[a].low[axis] + boxes[a].high[axis];
-      const float y = boxes[b].low[axis] + boxes[b].high[axis];
-      return x != y ? x < y : a < b;
-    });
-    Box box;
-    for (std::size_t i = count; i-- > 0;) {
-      box.add(boxes[sorted[i]]);
-      right[i] = box.halfSurface();
-    }
-    box = {};
-    for (std::size_t i = 1; i < count; ++i) {
-      box.add(boxes[sorted[i - 1]]);
-      const float cost = box.halfSurface() * static_cast<float>(i) + right[i] * static_cast<float>(count - i);
-      if (cost < bestCost) {
-        bestCost = cost;
-        bestCut = first + i;
-        best = sorted;
-      }
-    }
-  }
-  if (!best.empty()) std::copy(best.begin(), best.end(), order.begin() + static_cast<std::ptrdiff_t>(first));
-  return bestCut;
-}
-
 struct TrunkNode {
   std::size_t first, last;  // of the order of sides
   NodeIndex firstChild = noNode;
 };
 
-/// The trunk in breadth-first order, down to single sides.
-std::vector<TrunkNode> buildTrunk(std::vector<std::uint32_t>& order, const std::vector<Box>& boxes) {
-  std::vector<TrunkNode> nodes{{0, order.size()}};
-  for (std::size_t node = 0; node < nodes.size(); ++node) {
-    const auto [first, last, child] = nodes[node];
-    if (last - first < 2) continue;
-    const std::size_t cut = partSides(order, first, last, boxes);
-    nodes[node].firstChild = static_cast<NodeIndex>(nodes.size());
-    nodes.push_back({first, cut});
-    nodes.push_back({cut, last});
+/// Parts sides by the surface-area heuristic. They are sorted along each axis once; a cut keeps all three
+/// orders in both of its parts. Ties keep the canonical order.
+class TrunkBuilder {
+ public:
+  explicit TrunkBuilder(std::span<const Box> boxes)
+      : boxes_(boxes), costAfter_(boxes.size()), isBefore_(boxes.size()), aside_(boxes.size()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<std::uint32_t>& order = sorted_[static_cast<std::size_t>(axis)];
+      order.resize(boxes.size());
+      std::iota(order.begin(), order.end(), 0U);
+      std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const float x = boxes[a].low[axis] + boxes[a].high[axis];
+        const float y = boxes[b].low[axis] + boxes[b].high[axis];
+        return x != y ? x < y : a < b;
+      });
+    }
   }
-  return nodes;
-}
+
+  /// The trunk in breadth-first order, down to single sides.
+  std::vector<TrunkNode> build() {
+    std::vector<TrunkNode> nodes{{0, boxes_.size()}};
+    for (std::size_t node = 0; node < nodes.size(); ++node) {
+      const auto [first, last, child] = nodes[node];
+      if (last - first < 2) continue;
+      const std::size_t cut = part(first, last);
+      nodes[node].firstChild = static_cast<NodeIndex>(nodes.size());
+      nodes.push_back({first, cut});
+      nodes.push_back({cut, last});
+    }
+    return nodes;
+  }
+
+  /// The sides in the order that the built nodes refer to.
+  [[nodiscard]] const std::vector<std::uint32_t>& order() const { return sorted_[0]; }
+
+ private:
+  struct Cut {
+    float cost = std::numeric_limits<float>::infinity();
+    std::size_t place = 0;
+    std::size_t axis = 0;
+  };
+
+  /// Where to part the sides first … last; they are then in this order along every axis.
+  std::size_t part(std::size_t first, std::size_t last) {
+    Cut best;
+    best.place = first + (last - first) / 2;
+    for (std::size_t axis = 0; axis < 3; ++axis) lookAlong(axis, first, last, best);
+    for (std::size_t i = first; i < last; ++i) isBefore_[sorted_[best.axis][i]] = i < best.place;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (axis != best.axis) keepOrder(sorted_[axis], first, last);
+    }
+    return best.place;
+  }
+
+  void lookAlong(std::size_t axis, std::size_t first, std::size_t last, Cut& best) {
+    const std::vector<std::uint32_t>& order = sorted_[axis];
+    Box box;
+    for (std::size_t i = last; i-- > first;) {
+      box.add(boxes_[order[i]]);
+      costAfter_[i] = box.halfSurface() * static_cast<float>(last - i);
+    }
+    box = {};
+    for (std::size_t i = first + 1; i < last; ++i) {
+      box.add(boxes_[order[i - 1]]);
+      const float cost = box.halfSurface() * static_cast<float>(i - first) + costAfter_[i];
+      if (cost < best.cost) best = {cost, i, axis};
+    }
+  }
+
+  /// Brings the sides before the cut to the front.
+  void keepOrder(std::vector<std::uint32_t>& order, std::size_t first, std::size_t last) {
+    std::size_t before = first;
+    std::size_t after = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      if (isBefore_[order[i]] != 0) {
+        order[before++] = order[i];
+      } else {
+        aside_[after++] = order[i];
+      }
+    }
+    std::copy_n(aside_.begin(), after, order.begin() + static_cast<std::ptrdiff_t>(before));
+  }
+
+  std::span<const Box> boxes_;
+  std::array<std::vector<std::uint32_t>, 3> sorted_;
+  std::vector<float> costAfter_;        // by place in an order
+  std::vector<std::uint8_t> isBefore_;  // by side
+  std::vector<std::uint32_t> aside_;
+};
 
 }  // namespace
 
@@ -138,9 +177,9 @@ Hierarchy::Hierarchy(const Pieces& pieces, std::span<const std::uint32_t> sidesI
     sides.push_back({sidesIn[i], glm::vec3(back ? -pieces.normal[piece] : pieces.normal[piece]), noNode});
   }
 
-  std::vector<std::uint32_t> order(count);
-  std::iota(order.begin(), order.end(), 0U);
-  const std::vector<TrunkNode> trunk = buildTrunk(order, boxes);
+  TrunkBuilder builder(boxes);
+  const std::vector<TrunkNode> trunk = builder.build();
+  const std::vector<std::uint32_t>& order = builder.order();
 
   for (const TrunkNode& node : trunk) {
     const bool isSide = node.firstChild == noNode;

@@ -9,9 +9,8 @@
 #include <map>
 #include <numbers>
 
+#include <geometry/parallel.hpp>
 #include <geometry/sampling.hpp>
-
-#include "parallel.hpp"
 
 namespace clerestory {
 namespace {

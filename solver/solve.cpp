@@ -4,10 +4,10 @@
 #include <cmath>
 #include <set>
 
+#include <geometry/parallel.hpp>
 #include <solver/solution.hpp>
 
 #include "outside.hpp"
-#include "parallel.hpp"
 #include "sensors.hpp"
 #include "shooting.hpp"
 #include "surfaces.hpp"

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "parallel.hpp"
+#include <geometry/parallel.hpp>
 
 namespace clerestory {
 

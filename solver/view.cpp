@@ -10,9 +10,8 @@
 #include <numbers>
 #include <optional>
 
+#include <geometry/parallel.hpp>
 #include <geometry/sampling.hpp>
-
-#include "parallel.hpp"
 
 namespace clerestory {
 namespace {

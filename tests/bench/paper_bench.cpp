@@ -11,9 +11,11 @@
 #include <limits>
 #include <map>
 
+#include <geometry/parallel.hpp>
+
 #include "../scenes.hpp"
 #include "gathering.hpp"
-#include "parallel.hpp"
+
 #include "shooting.hpp"
 
 namespace clerestory {

@@ -50,6 +50,10 @@ class RayScene {
   [[nodiscard]] Hit nearest(const glm::vec3& from, const glm::vec3& direction, Barrier barrier,
                             float limit_m = std::numeric_limits<float>::infinity()) const;
 
+  /// Whether `nearest` would meet something.
+  [[nodiscard]] bool meetsAny(const glm::vec3& from, const glm::vec3& direction, Barrier barrier,
+                              float limit_m) const;
+
   /// Whether something stands between two points, which may lie on surfaces themselves.
   [[nodiscard]] bool occluded(const glm::vec3& from, const glm::vec3& to, Barrier barrier) const;
 

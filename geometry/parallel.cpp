@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Threads through oneTBB. Nothing here adds up numbers, so no result depends on the number of threads.
-#include "parallel.hpp"
-
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
+
+#include <geometry/parallel.hpp>
 
 namespace clerestory {
 
