@@ -20,6 +20,17 @@ constexpr float farApart = 0.1F;          // (radii) / distance below which cent
 
 }  // namespace
 
+TransportSettings transportFor(double accuracy) {
+  const double finer = 0.05 / accuracy;  // 1 at the standard accuracy
+  TransportSettings settings;
+  settings.epsilon = static_cast<float>(2e-5 / (finer * finer));
+  settings.elementMin_m = static_cast<float>(std::max(0.08 / finer, 0.02));
+  settings.portalFluxRays = static_cast<std::uint32_t>(std::clamp(1024.0 * finer * finer, 512.0, 65536.0));
+  settings.skyRays = static_cast<std::uint32_t>(256.0 * finer);
+  settings.endShare = 0.02 * accuracy;
+  return settings;
+}
+
 template <int K>
 Interactions<K>::Interactions(const SolvedLight<K>& light, std::int32_t domain, const Hierarchy& tree,
                               const Unshot<K>& unshot, const TransportSettings& settings)

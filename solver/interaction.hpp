@@ -32,6 +32,9 @@ struct TransportSettings {
   std::size_t memoryBytes = std::size_t{4} << 30;
 };
 
+/// What an asked accuracy sets, calibrated on the reference scenes (docs/validation.md).
+TransportSettings transportFor(double accuracy);
+
 /// A cluster's light by direction.
 template <int K>
 using Six = std::array<Columns<K>, 6>;

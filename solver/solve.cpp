@@ -16,7 +16,7 @@
 namespace clerestory {
 namespace {
 
-/// What an asked accuracy sets inside, calibrated on the reference scenes (docs/validation.md).
+/// What an asked accuracy sets inside, beside the transport's settings as well calibrated.
 struct Tuning {
   TransportSettings transport;
   GatherSettings sensors;
@@ -27,12 +27,7 @@ struct Tuning {
 Tuning tuningFor(double accuracy, const SolveOptions& options) {
   const double finer = 0.05 / accuracy;  // 1 at the standard accuracy
   Tuning tuning;
-  tuning.transport.epsilon = static_cast<float>(2e-5 / (finer * finer));
-  tuning.transport.elementMin_m = static_cast<float>(std::max(0.08 / finer, 0.02));
-  tuning.transport.portalFluxRays =
-      static_cast<std::uint32_t>(std::clamp(1024.0 * finer * finer, 512.0, 65536.0));
-  tuning.transport.skyRays = static_cast<std::uint32_t>(256.0 * finer);
-  tuning.transport.endShare = 0.02 * accuracy;
+  tuning.transport = transportFor(accuracy);
   tuning.transport.memoryBytes = options.memoryBytes;
   tuning.sensors.direct = {static_cast<float>(512.0 * finer), static_cast<float>(24.0 * finer)};
   tuning.sensors.rays =

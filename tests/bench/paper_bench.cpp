@@ -15,7 +15,6 @@
 
 #include "../scenes.hpp"
 #include "gathering.hpp"
-
 #include "shooting.hpp"
 
 namespace clerestory {

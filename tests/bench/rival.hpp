@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The plain rival of the solver: radiosity over uniform elements, cosine rays traced once, Jacobi iterations.
+#pragma once
+
+#include "direct.hpp"
+#include "radiosity.hpp"
+
+namespace clerestory {
+
+/// What decides how finely the rival works.
+struct RivalSettings {
+  float elementSize_m = 0.4F;          ///< elements fit the circle about a square of this size
+  std::uint32_t raysPerElement = 128;  ///< cosine rays, for the light between surfaces
+  std::uint32_t directPoints = 1;      ///< of an element, for light from portals and emitters
+  DirectSamples direct{15.0F, 1.0F};   ///< of each portal and emitter at each of these points
+  double endShare = 1e-3;              ///< change of the mean illuminance that ends the iterations
+};
+
+/// A domain as the rival has solved it, and what that took.
+template <int K>
+struct RivalSolution {
+  Radiosity<K> radiosity;
+  std::uint64_t elements = 0;
+  std::uint64_t rays = 0;  ///< of both kinds
+  double directSeconds = 0.0;
+  double leakedShare = 0.0;  ///< of the cosine rays: those that met nothing of the domain
+};
+
+/// Solves a closed domain. It shares with the solver what lies around the transport: the tree and its
+/// division, the light from portals and emitters at a point (direct.hpp), glass as a diffuse reflector.
+/// Random numbers come from the tree's keys.
+template <int K>
+RivalSolution<K> rivalRadiosity(const SolvedLight<K>& light, std::int32_t domain, Hierarchy tree,
+                                const RivalSettings& settings);
+
+}  // namespace clerestory
