@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exact form factors of small parts of luminous polygons, times what is seen of them.
+// Exact form factors of luminous polygons, times the mean of what is seen of them by even solid angle.
 #include "direct.hpp"
 
 #include <glm/geometric.hpp>
@@ -13,77 +13,45 @@
 #include <geometry/sampling.hpp>
 #include <solver/formfactor.hpp>
 
+#include "sphericalpolygon.hpp"
+
 namespace clerestory {
 namespace {
 
-constexpr float partSize = 0.6F;      // of its distance, radius of the largest part that is not parted
-constexpr float partFactor = 0.003F;  // form factor below which a part is small enough anyhow
-constexpr int partDepth = 10;
-constexpr float samplesOfPart = 128.0F;  // at most
+constexpr float samplesMost = 1024.0F;
 
-/// Calls use(part, form factor, centre) for the parts of a polygon as seen from a receiver.
-template <class Use>
-void forEachPart(const glm::vec3& receiver, const glm::vec3& normal, const ElementShape& part,
-                 const glm::vec3& partNormal, int depth, const Use& use) {
-  const float formFactor = pointToPolygon(receiver, normal, part.corners);
-  if (formFactor <= 0.0F) return;
-  const float distance_m = glm::length(part.centre - receiver);
-  if (depth == 0 || formFactor < partFactor || part.radius_m < partSize * distance_m) {
-    use(part, formFactor);
-    return;
-  }
-  const Halves halves = halve(part, partNormal);
-  forEachPart(receiver, normal, halves.first, partNormal, depth - 1, use);
-  forEachPart(receiver, normal, halves.second, partNormal, depth - 1, use);
-}
-
-/// Points of a part with the density of the form factor's kernel: a few times as many are laid evenly, and
-/// drawn from by their kernel, so that a mean over them needs no weights. (With one even point a part, the
-/// mean would lean to what is seen at its far end.)
-class KernelPoints {
- public:
-  KernelPoints(const glm::vec3& receiver, const glm::vec3& normal, std::span<const glm::vec3> part,
-               const glm::vec3& partNormal, std::uint32_t count, std::uint64_t key) {
-    const std::uint32_t candidates = std::max(candidatesOfPart, 2 * count);
-    const Sequence sequence(key);
-    std::array<glm::vec3, candidatesMax> laid;
-    std::array<float, candidatesMax> upTo;  // running sum of the kernel
-    float total = 0.0F;
-    for (std::uint32_t i = 0; i < candidates; ++i) {
-      laid[i] = pointOnPolygon<glm::vec3>(part, sequence(i, 0), sequence(i, 1));
-      const glm::vec3 way = laid[i] - receiver;
-      const float squared = std::max(glm::dot(way, way), 1e-12F);
-      total +=
-          std::max(glm::dot(way, normal), 0.0F) * std::abs(glm::dot(way, partNormal)) / (squared * squared);
-      upTo[i] = total;
-    }
-    if (total <= 0.0F) return;
-    const float shift = sequence(0, 2);
-    std::uint32_t candidate = 0;
-    for (; size_ < count; ++size_) {
-      const float target = (static_cast<float>(size_) + shift) * total / static_cast<float>(count);
-      while (candidate + 1 < candidates && upTo[candidate] <= target) ++candidate;
-      points_[size_] = laid[candidate];
-    }
-  }
-  [[nodiscard]] std::uint32_t size() const { return size_; }
-  const glm::vec3& operator[](std::uint32_t i) const { return points_[i]; }
-
- private:
-  static constexpr std::uint32_t candidatesOfPart = 8;
-  static constexpr std::uint32_t candidatesMax = 2 * static_cast<std::uint32_t>(samplesOfPart);
-  std::array<glm::vec3, static_cast<std::size_t>(samplesOfPart)> points_;
-  std::uint32_t size_ = 0;
+/// A sample's place in its sequence, its weight and what it saw.
+struct Seen {
+  float u, v, weight, strength;
 };
 
-ElementShape wholeShape(std::span<const glm::vec3> polygon) {
-  ElementShape shape;
-  shape.corners.assign(polygon.begin(), polygon.end());
-  for (const glm::vec3& corner : polygon) shape.centre += corner / static_cast<float>(polygon.size());
-  for (const glm::vec3& corner : polygon) {
-    shape.radius_m = std::max(shape.radius_m, glm::length(corner - shape.centre));
+/// Variance of the weighted mean, from what differs within cells that hold two samples each on average: the
+/// sequence is even, so what differs between cells is no error.
+float varianceWithinCells(std::span<const Seen> samples, float mean, float weights) {
+  constexpr std::size_t sideMost = 16;
+  struct Cell {
+    float count = 0.0F, sum = 0.0F, squares = 0.0F;
+  };
+  std::array<Cell, sideMost * sideMost> cells{};
+  const auto side = std::clamp(static_cast<std::size_t>(std::sqrt(0.5F * static_cast<float>(samples.size()))),
+                               std::size_t{1}, sideMost);
+  for (const Seen& sample : samples) {
+    const auto column = static_cast<std::size_t>(sample.u * static_cast<float>(side));
+    const auto row = static_cast<std::size_t>(sample.v * static_cast<float>(side));
+    Cell& cell = cells[std::min(row, side - 1) * side + std::min(column, side - 1)];
+    const float value = sample.weight * (sample.strength - mean) / weights;
+    cell.count += 1.0F;
+    cell.sum += value;
+    cell.squares += value * value;
   }
-  return shape;
+  float variance = 0.0F;
+  float counted = 0.0F;
+  for (const Cell& cell : cells) {
+    if (cell.count < 2.0F) continue;
+    counted += cell.count;
+    variance += (cell.squares - cell.sum * cell.sum / cell.count) * cell.count / (cell.count - 1.0F);
+  }
+  return counted > 0.0F ? variance * static_cast<float>(samples.size()) / counted : 0.0F;
 }
 
 }  // namespace
@@ -95,42 +63,37 @@ DirectLight<K> directFromPolygon(const ColumnLayout& layout, const glm::vec3& re
   DirectLight<K> result;
   const float whole = pointToPolygon(receiver, normal, polygon);
   if (whole <= 0.0F) return result;
-  const float density = std::max(samples.perFormFactor, samples.least / whole);
+  const SphericalPolygon seenPolygon(receiver, normal, polygon);
+  if (seenPolygon.solidAngle_sr() <= 0.0) return result;
   const glm::vec3 polygonNormal =
       glm::normalize(glm::cross(polygon[1] - polygon[0], polygon[polygon.size() - 1] - polygon[0]));
-  float variance = 0.0F;
-  float lastMean = -1.0F;
-  std::uint64_t partNumber = 0;
-  const auto usePart = [&](const ElementShape& part, float formFactor) {
-    const auto count =
-        static_cast<std::uint32_t>(std::clamp(std::ceil(density * formFactor), 1.0F, samplesOfPart));
-    const KernelPoints points(receiver, normal, part.corners, polygonNormal, count,
-                              mixKeys(key, partNumber++));
-    if (points.size() == 0) return;
-    Columns<K> sum;
-    float strengths = 0.0F;
-    float squares = 0.0F;
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-      const Columns<K> seen = luminance(points[i]);
-      const float strength = layout.strength(seen);
-      sum += seen;
-      strengths += strength;
-      squares += strength * strength;
-    }
-    const auto number = static_cast<float>(points.size());
-    result.rays += points.size();
-    const float scale = std::numbers::pi_v<float> * formFactor;
-    result.illuminance_lx += (scale / number) * sum;
-    const float mean = strengths / number;
-    // A single sample says nothing of its own spread; half the squared step from the part before does.
-    const float step = lastMean < 0.0F ? 0.0F : mean - lastMean;
-    const float spread =
-        points.size() > 1 ? std::max(squares / number - mean * mean, 0.0F) : 0.5F * step * step;
-    lastMean = mean;
-    variance += scale * scale * spread / number;
-  };
-  forEachPart(receiver, normal, wholeShape(polygon), polygonNormal, partDepth, usePart);
-  result.deviation_lx = std::sqrt(variance);
+  const float height_m = glm::dot(polygon[0] - receiver, polygonNormal);
+  const auto count = static_cast<std::uint32_t>(
+      std::clamp(std::ceil(std::max(samples.perFormFactor * whole, samples.least)), 1.0F, samplesMost));
+  const Sequence sequence(key);
+  std::array<Seen, static_cast<std::size_t>(samplesMost)> seen;
+  Columns<K> sum;
+  float weights = 0.0F;
+  float strengths = 0.0F;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Seen& own = seen[i];
+    own = {sequence(i, 0), sequence(i, 1), 0.0F, 0.0F};
+    const glm::vec3 direction = seenPolygon.direction(own.u, own.v);
+    const float approach = glm::dot(direction, polygonNormal);
+    own.weight = std::max(glm::dot(direction, normal), 0.0F);
+    if (approach * height_m <= 0.0F || own.weight <= 0.0F) continue;
+    const Columns<K> light = luminance(receiver + (height_m / approach) * direction);
+    own.strength = layout.strength(light);
+    sum += own.weight * light;
+    weights += own.weight;
+    strengths += own.weight * own.strength;
+    ++result.rays;
+  }
+  if (weights <= 0.0F) return result;
+  const float scale = std::numbers::pi_v<float> * whole;
+  result.illuminance_lx = (scale / weights) * sum;
+  result.deviation_lx =
+      scale * std::sqrt(varianceWithinCells(std::span(seen).first(count), strengths / weights, weights));
   return result;
 }
 

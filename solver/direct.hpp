@@ -27,9 +27,9 @@ template <int K>
 using Luminance = std::function<Columns<K>(const glm::vec3& onPolygon)>;
 
 /// Illuminance of a point with unit `normal` from a convex planar polygon, whose luminance is asked for at
-/// points. The polygon is parted until each part is small beside its distance; each part's form factor is
-/// exact (Lambert) and its luminance a mean weighed by the kernel, so an unhidden even polygon comes out
-/// exact. Each part gets one sample at least. `key` seeds the points.
+/// points. The polygon's form factor is exact (Lambert) and its luminance a mean over directions that are
+/// even by solid angle, weighed by their cosine, so an unhidden even polygon comes out exact. `key` seeds
+/// them.
 template <int K>
 DirectLight<K> directFromPolygon(const ColumnLayout& layout, const glm::vec3& receiver,
                                  const glm::vec3& normal, std::span<const glm::vec3> polygon,

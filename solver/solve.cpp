@@ -29,7 +29,7 @@ Tuning tuningFor(double accuracy, const SolveOptions& options) {
   Tuning tuning;
   tuning.transport = transportFor(accuracy);
   tuning.transport.memoryBytes = options.memoryBytes;
-  tuning.sensors.direct = {static_cast<float>(512.0 * finer), static_cast<float>(24.0 * finer)};
+  tuning.sensors.direct = {static_cast<float>(256.0 * finer), static_cast<float>(128.0 * finer)};
   tuning.sensors.rays =
       static_cast<std::uint32_t>(std::clamp(1024.0 * finer * std::sqrt(finer), 256.0, 65536.0));
   tuning.views = {{96.0F, 2.0F}, 64};
