@@ -202,11 +202,18 @@ void printTargets(const std::string& scene, const std::vector<Run>& runs) {
   const auto print = [&](const char* what, double target,
                          std::map<std::string, std::vector<TimedError>>& by) {
     const double rival_s = secondsTo(target, frontOf(by["rival"]));
-    std::cout << scene << ", " << what << " to " << 100.0 * target << " %: rival " << rival_s << " s";
-    for (auto& [method, timed] : by) {
-      if (method == "rival") continue;
+    std::cout << scene << ", " << what << " to " << 100.0 * target << " %:";
+    for (const auto& [method, timed] : by) {
       const double own_s = secondsTo(target, frontOf(timed));
-      std::cout << ", " << method << ' ' << own_s << " s (rival / this: " << rival_s / own_s << ')';
+      std::cout << ' ' << method << ' ';
+      if (std::isfinite(own_s)) {
+        std::cout << own_s << " s";
+      } else {
+        std::cout << "not reached";
+      }
+      if (method != "rival" && std::isfinite(own_s) && std::isfinite(rival_s))
+        std::cout << " (rival / this: " << rival_s / own_s << ')';
+      std::cout << ';';
     }
     std::cout << '\n';
   };
