@@ -3,6 +3,8 @@
 // inner glass.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <set>
 
 #include "../scenes.hpp"
@@ -247,6 +249,43 @@ TEST(Domains, DoNotDependOnTheOrderOfFaces) {
     EXPECT_EQ(other.portals[0].piece, first.portals[0].piece);
     EXPECT_EQ(other.portals[0].frontIsInside, first.portals[0].frontIsInside);
   }
+}
+
+// Facets smaller than an opening have one point each; a ball's outer sides face the room, its inner ones the
+// hollow.
+TEST(Domains, FineBallFacesTheRoomOutsideAndItsHollowInside) {
+  Drawing drawing;
+  addBox(drawing, kLow, kHigh);
+  addBox(drawing, {1.5, 1.0, 0.0}, {2.5, 2.0, 0.8}, wood, 1, {0});
+  const glm::dvec3 middle(2.0, 1.5, 1.6);
+  constexpr int rings = 40;
+  constexpr int round = 64;
+  const auto at = [&](int i, int j) {
+    const double polar = std::numbers::pi * i / rings;
+    const double turn = 2.0 * std::numbers::pi * j / round;
+    return middle + 0.4 * glm::dvec3(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn),
+                                     std::cos(polar));
+  };
+  for (int j = 0; j < round; ++j) {
+    drawing.face({at(0, 0), at(1, j), at(1, j + 1)}, wood, 1);
+    for (int i = 1; i + 1 < rings; ++i) {
+      drawing.face({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}, wood, 1);
+    }
+    drawing.face({at(rings - 1, j), at(rings, 0), at(rings - 1, j + 1)}, wood, 1);
+  }
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 1U);
+  const std::int32_t room = building.rooms[0].domain;
+  std::size_t facets = 0;
+  for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
+    const glm::dvec3 outwards = centreOf(building, side / 2) - middle;
+    if (glm::length(outwards) > 0.41) continue;
+    const glm::dvec3& normal = building.model.pieces.normal[side / 2];
+    const bool looksOut = glm::dot(side % 2 == 0 ? normal : -normal, outwards) > 0.0;
+    EXPECT_EQ(building.sideDomain[side] == room, looksOut) << "side " << side;
+    ++facets;
+  }
+  EXPECT_GT(facets, 2U * round * (rings - 4));  // hardly any were merged
 }
 
 }  // namespace
