@@ -8,11 +8,10 @@
 #include <numbers>
 #include <set>
 
+#include <geometry/parallel.hpp>
 #include <geometry/sampling.hpp>
 
 #include "outside.hpp"
-#include <geometry/parallel.hpp>
-
 #include "shooting.hpp"
 #include "surfaces.hpp"
 
