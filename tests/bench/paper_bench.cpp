@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's own measurements on a model lit by its luminous panels: links of each step, what the cache
-// saves (Tables 1 and 2), global error against the local threshold (Figures 2 and 3), links and their reuse
-// in shooting and gathering (Figures 4 and 5). Writes CSV files into a folder.
+// The paper's own measurements on a model lit by its luminous panels: what the cache saves (Tables 1 and 2),
+// links and their reuse in shooting and gathering (Figures 4 and 5), and how far the two differ. Prints them.
 #include <CLI/CLI.hpp>
 
-#include <chrono>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <limits>
 #include <map>
@@ -63,12 +59,12 @@ struct Run {
   }
 };
 
-struct Scene1 {
+struct LitScene {
   const World& world;
   SolvedLight<1> light;
   std::int32_t domain;
 
-  explicit Scene1(const World& worldIn) : world(worldIn), light(worldIn), domain(litDomain(worldIn)) {}
+  explicit LitScene(const World& worldIn) : world(worldIn), light(worldIn), domain(litDomain(worldIn)) {}
 
   [[nodiscard]] Run shooting(const TransportSettings& settings, std::size_t cachedLinks) const {
     const Stopwatch watch;
@@ -111,19 +107,24 @@ void print(const std::string& what, const Run& run) {
             << run.solved.statistics.size() << " steps, " << run.seconds << " s\n";
 }
 
+void printSteps(const Run& run) {
+  for (const IterationStatistics& row : run.solved.statistics)
+    std::cout << row.iteration << ' ' << row.linksRequired << ' ' << row.linksCached << ' ' << row.linksReused
+              << ' ' << row.visibilityTests << ' ' << row.unshotPower_lm << ' ' << row.elements << ' '
+              << row.seconds << '\n';
+}
+
 }  // namespace
 }  // namespace clerestory
 
 int main(int argc, char** argv) {
   using namespace clerestory;
   std::string model = std::string(CLERESTORY_SAMPLES) + "/office/office.glb";
-  std::string out = "paper";
   double epsilon = 1e-6;
   double elementMin_m = 0.1;
   int threads = 0;
   CLI::App app("the paper's measurements");
   app.add_option("--model", model);
-  app.add_option("--out", out);
   app.add_option("--epsilon", epsilon);
   app.add_option("--element", elementMin_m);
   app.add_option("--threads", threads);
@@ -134,7 +135,7 @@ int main(int argc, char** argv) {
   study.grids.clear();
   const Building building = makeBuilding(cleanScene(readModel(model, {})), study);
   const World world(building, study);
-  const Scene1 scene(world);
+  const LitScene scene(world);
   TransportSettings settings;
   settings.oracle = Oracle::transportedPower;
   settings.epsilon = static_cast<float>(epsilon);
@@ -146,18 +147,11 @@ int main(int argc, char** argv) {
          {std::size_t{0}, std::size_t{100'000}, std::size_t{1'000'000}, unlimited}) {
       const Run run = scene.shooting(settings, links);
       print("shooting, cache " + std::to_string(links), run);
-      if (links == 100'000 || links == unlimited)
-        for (const IterationStatistics& row : run.solved.statistics)
-          std::cout << row.iteration << ' ' << row.linksRequired << ' ' << row.linksCached << ' '
-                    << row.linksReused << ' ' << row.visibilityTests << ' ' << row.unshotPower_lm << ' '
-                    << row.elements << ' ' << row.seconds << '\n';
+      if (links == 100'000 || links == unlimited) printSteps(run);
     }
     const Run gathered = scene.gathering(settings);
     print("gathering", gathered);
-    for (const IterationStatistics& row : gathered.solved.statistics)
-      std::cout << row.iteration << ' ' << row.linksRequired << ' ' << row.linksCached << ' '
-                << row.linksReused << ' ' << row.visibilityTests << ' ' << row.unshotPower_lm << ' '
-                << row.elements << ' ' << row.seconds << '\n';
+    printSteps(gathered);
     std::cout << "difference " << globalError(scene.shooting(settings, 0).solved, gathered.solved) << '\n';
   });
 }
