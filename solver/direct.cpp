@@ -49,7 +49,8 @@ float varianceWithinCells(std::span<const Seen> samples, float mean, float weigh
   for (const Cell& cell : cells) {
     if (cell.count < 2.0F) continue;
     counted += cell.count;
-    variance += (cell.squares - cell.sum * cell.sum / cell.count) * cell.count / (cell.count - 1.0F);
+    const float within = std::max(cell.squares - cell.sum * cell.sum / cell.count, 0.0F);  // but for rounding
+    variance += within * cell.count / (cell.count - 1.0F);
   }
   return counted > 0.0F ? variance * static_cast<float>(samples.size()) / counted : 0.0F;
 }
