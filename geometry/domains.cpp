@@ -27,7 +27,8 @@ constexpr std::uint32_t raysOfPoint = 6;
 constexpr std::uint32_t pointsOfSide = 3;  // at least; one where a side is smaller than an opening
 constexpr double pointsOfModel = 4000.0;   // further ones, shared out by area
 constexpr std::uint32_t pointsOfSideMax = 256;
-constexpr std::uint32_t closerRays = 32;   // of a closer look
+constexpr std::uint32_t closerRays = 32;  // of a closer look
+constexpr std::uint32_t closerRaysOfSmall = 8;
 constexpr std::uint32_t agreeingRays = 8;  // of these, where all agree with the side's points
 constexpr std::uint32_t nowhere = RayScene::Hit::none;
 
@@ -128,19 +129,20 @@ class AirSurvey {
     return false;
   }
 
-  /// The air that a side is given after a closer look (unless it is small): the one of those among `lit` that
-  /// is met most from it; `own` where none is. Most of a seat's upper face may lie under its cushion.
+  /// The air that a side is given after a closer look: the one of those among `lit` that is met most from it;
+  /// `own` where none is. Most of a seat's upper face may lie under its cushion.
   [[nodiscard]] std::uint32_t closerAirOf(std::uint32_t side, std::uint32_t own,
                                           const std::vector<bool>& lit) const {
     const bool isLit = own != nowhere && lit[own];
-    if (isSmall(side) || (isLit && !isInDoubt(side))) return own;
+    if (isLit && (isSmall(side) || !isInDoubt(side))) return own;
+    const std::uint32_t rays = isSmall(side) ? closerRaysOfSmall : closerRays;
     const auto polygon = localPolygon(side / 2);
     const glm::vec3& normal = places_[firstPlace_[side]].normal;
     const Sequence sequence(mixKeys(0xd2, side));
     Votes votes;
     bool agree = isLit;
-    for (std::uint32_t i = 0; i < closerRays; ++i) {
-      if (votes.isDecided(closerRays - i) || (agree && i == agreeingRays)) break;
+    for (std::uint32_t i = 0; i < rays; ++i) {
+      if (votes.isDecided(rays - i) || (agree && i == agreeingRays)) break;
       const glm::vec3 start =
           pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1)) + rayOffset_m * normal;
       const std::uint32_t other = look(start, cosineDirection(normal, sequence(i, 2), sequence(i, 3))).place;
