@@ -21,7 +21,6 @@ SolvedDomain<K> gatheringHR(const SolvedLight<K>& light, std::int32_t domain, Hi
   const Columns<K> emitted_lm = transport.powerOf(sent);
   const Columns<K> entering_lm = transport.enteringPower_lm();
   const float first_lm = world.layout.strength(emitted_lm) + world.layout.strength(entering_lm);
-  solved.balance.emitted_lm = luminanceOf(world.layout.totalColour(emitted_lm + entering_lm));
   if (!(first_lm > 0.0F)) return solved;
   transport.setFirstLight(first_lm);
 
@@ -30,6 +29,7 @@ SolvedDomain<K> gatheringHR(const SolvedLight<K>& light, std::int32_t domain, Hi
   std::vector<Columns<K>> entered_lx;
   const Stopwatch firstWatch;
   transport.send(std::vector<Columns<K>>(tree.size()), true);
+  solved.balance.emitted_lm = luminanceOf(world.layout.totalColour(emitted_lm + transport.enteredPower_lm()));
   for (const Received<K>& received : transport.received()) entered_lx.push_back(received.irradiance_lx);
   transport.handOverLinks(1.0F);
   solved.addStatistics(transport.tally(), 0, world.layout.strength(entering_lm), firstWatch.seconds());

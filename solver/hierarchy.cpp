@@ -181,7 +181,10 @@ Hierarchy::Hierarchy(const Pieces& pieces, std::span<const std::uint32_t> sidesI
   const std::vector<TrunkNode> trunk = builder.build();
   const std::vector<std::uint32_t>& order = builder.order();
 
+  placeOfSide.resize(count);
+  for (std::uint32_t place = 0; place < count; ++place) placeOfSide[order[place]] = place;
   for (const TrunkNode& node : trunk) {
+    places.push_back({static_cast<std::uint32_t>(node.first), static_cast<std::uint32_t>(node.last)});
     const bool isSide = node.firstChild == noNode;
     if (isSide) {
       const std::uint32_t own = order[node.first];
@@ -280,18 +283,15 @@ NodeIndex Hierarchy::divide(NodeIndex parent, const ElementShape& first, const E
 }
 
 NodeIndex Hierarchy::leafAt(NodeIndex node, const glm::vec3& point) const {
-  while (!isLeaf(node)) {
-    const glm::vec4& plane = split[node];
-    node = firstChild[node] + (glm::dot(glm::vec3(plane), point) + plane.w > 0.0F ? 1U : 0U);
-  }
+  while (!isLeaf(node)) node = childAt(node, point);
   return node;
 }
 
 std::size_t Hierarchy::bytes() const {
   return size() * (sizeof(glm::vec3) + 3 * sizeof(float) + 2 * sizeof(NodeIndex) + sizeof(std::uint64_t) +
                    2 * sizeof(std::uint32_t) + sizeof(glm::vec4) + sizeof(Spots)) +
-         trunkSize_ * (sizeof(spotSides[0]) + sizeof(crossSection_m2[0])) +
-         corners.size() * sizeof(glm::vec3);
+         trunkSize_ * (sizeof(spotSides[0]) + sizeof(crossSection_m2[0]) + sizeof(places[0])) +
+         placeOfSide.size() * sizeof(placeOfSide[0]) + corners.size() * sizeof(glm::vec3);
 }
 
 Spots spotsOn(std::span<const glm::vec3> polygon, std::uint64_t key) {

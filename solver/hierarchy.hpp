@@ -71,6 +71,10 @@ class Hierarchy {
   std::vector<Spots> spots;
   /// Of the trunk's nodes: the sides that the spots lie on.
   std::vector<std::array<std::uint32_t, spotsOfNode>> spotSides;
+  /// The sides in the trunk's order, in which those of any of its nodes stand together: #sides, their places;
+  /// and of the trunk's nodes the first place and the one past the last.
+  std::vector<std::uint32_t> placeOfSide;
+  std::vector<std::array<std::uint32_t, 2>> places;
   /// Of the trunk's nodes: area seen from +x -x +y -y +z -z were nothing hidden.
   std::vector<std::array<float, 6>> crossSection_m2;
 
@@ -92,6 +96,11 @@ class Hierarchy {
   NodeIndex divide(NodeIndex parent, const ElementShape& first, const ElementShape& second,
                    const glm::vec4& plane);
 
+  /// The child of a divided element that holds a point of it.
+  [[nodiscard]] NodeIndex childAt(NodeIndex element, const glm::vec3& point) const {
+    const glm::vec4& plane = split[element];
+    return firstChild[element] + (glm::dot(glm::vec3(plane), point) + plane.w > 0.0F ? 1U : 0U);
+  }
   /// The leaf of a side's tree that holds a point of the side.
   [[nodiscard]] NodeIndex leafAt(NodeIndex sideRoot, const glm::vec3& point) const;
 

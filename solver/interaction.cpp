@@ -11,12 +11,20 @@
 #include <geometry/sampling.hpp>
 #include <solver/formfactor.hpp>
 
+#include "weak.hpp"
+
 namespace clerestory {
 namespace {
 
 constexpr float touching_m = 1e-5F;       // below this a point counts as in a plane
 constexpr float linearDeviation = 0.29F;  // 1 / sqrt(12): rms of a linear ramp, of its whole rise
-constexpr float farApart = 0.1F;          // (radii) / distance below which centres stand for elements
+// Calibrated on the furnished office (docs/validation.md): errors of surfaces against time.
+constexpr float rayNoise = 4.0F;  // of what rays bring together, in thresholds of a link: noise averages
+constexpr float raysInsteadOfLinks = 32.0F;  // up to so many, links are not even looked for
+constexpr float weakRaysLeast = 2.0F, weakRaysMost = 256.0F;
+constexpr float clusterTakes = 5.0F;  // thresholds that a cluster takes as one mean
+
+constexpr float farApart = 0.1F;  // (radii) / distance below which centres stand for elements
 
 }  // namespace
 
@@ -42,6 +50,8 @@ Interactions<K>::Interactions(const SolvedLight<K>& light, std::int32_t domain, 
       isOpen_(world_.building.domains[static_cast<std::size_t>(domain)].open),
       totalWeight_(std::max(tree.weight[0], 1e-20F)) {
   if (!isOpen_) portals_ = portalsOf(light, domain, settings.portalFluxRays);
+  treeSideOf_.resize(2 * world_.pieces().size(), noNode);
+  for (std::uint32_t i = 0; i < tree.sides.size(); ++i) treeSideOf_[tree.sides[i].side] = i;
 }
 
 template <int K>
@@ -147,20 +157,31 @@ Verdict Interactions<K>::judgePower(const Receiver& receiver, NodeIndex sender, 
 template <int K>
 Verdict Interactions<K>::judgeCluster(const Receiver& receiver, NodeIndex sender, const Sight& seen) const {
   const float power = seen.strength * seen.bound * receiver.weight;
-  if (power <= threshold_lm) return Verdict::accept;
+  if (power <= threshold_lm) {
+    if (!usesRays()) return Verdict::accept;
+    return raysNeeded(power * unshot_.highest[sender] * receiver.weight) <= raysInsteadOfLinks
+               ? Verdict::weak
+               : refineLarger(receiver, sender);
+  }
   const float senderRadius_m = tree_.isLeaf(sender) ? 0.0F : tree_.radius_m[sender];
   const bool apart = seen.distance_m > receiver.radius_m + tree_.radius_m[sender];
   const float relative = std::min(1.0F, std::max(receiver.radius_m, senderRadius_m) / seen.distance_m);
-  if (apart && 0.5F * power * relative <= threshold_lm) return Verdict::accept;
+  if (!usesRays() && apart && 0.5F * power * relative <= threshold_lm) return Verdict::accept;
   return refineLarger(receiver, sender);
 }
 
 template <int K>
 Verdict Interactions<K>::judgeElement(const Receiver& receiver, NodeIndex sender, const Sight& seen) const {
   const float power = seen.strength * seen.bound * receiver.weight;
-  if (power <= threshold_lm) return Verdict::accept;
-  if (tree_.isCluster(sender) && seen.distance_m < receiver.radius_m + tree_.radius_m[sender])
-    return refineLarger(receiver, sender);
+  if (power <= threshold_lm) {
+    if (!usesRays()) return Verdict::accept;
+    // Rays would hardly ever meet a small and bright sender; a link knows where it is.
+    const float rays = raysNeeded(power * unshot_.highest[sender] * receiver.weight);
+    if (rays <= raysInsteadOfLinks) return Verdict::weak;
+    return tree_.isCluster(sender) ? Verdict::refineSender : Verdict::accept;
+  }
+  const bool apart = seen.distance_m >= receiver.radius_m + tree_.radius_m[sender];
+  if (tree_.isCluster(sender) && (usesRays() || !apart)) return refineLarger(receiver, sender);
   const float senderShare =
       tree_.isLeaf(sender) ? 0.0F : std::min(1.0F, tree_.radius_m[sender] / seen.distance_m);
   const float receiverShare =
@@ -169,6 +190,49 @@ Verdict Interactions<K>::judgeElement(const Receiver& receiver, NodeIndex sender
   const float roughly = seen.bound * receiver.weight * linearDeviation *
                         std::max(seen.strength * receiverShare, uneven(sender) * senderShare);
   return roughly > 8.0F * threshold_lm ? refineLarger(receiver, sender) : Verdict::accept;
+}
+
+template <int K>
+float Interactions<K>::raysNeeded(float variance_lm2) const {
+  const float noise_lm = rayNoise * threshold_lm;
+  return variance_lm2 / (noise_lm * noise_lm);
+}
+
+template <int K>
+void Interactions<K>::addWeak(WeakSenders& weak, const Receiver& receiver, NodeIndex sender) const {
+  const Sight seen = look(receiver, sender);
+  const float power_lm = seen.strength * seen.bound * receiver.weight;
+  weak.nodes.push_back(sender);
+  weak.power_lm += power_lm;
+  weak.variance_lm2 += power_lm * unshot_.highest[sender] * receiver.weight;
+}
+
+// A cluster's contents share what comes by rays, so it takes less of that than an element.
+template <int K>
+bool Interactions<K>::takesWeak(const Receiver& receiver, const WeakSenders& weak) const {
+  return !receiver.isCluster() || weak.power_lm <= clusterTakes * threshold_lm;
+}
+
+template <int K>
+bool Interactions<K>::leavesToRays(const Receiver& receiver, std::span<const Sender> senders,
+                                   WeakSenders& weak) const {
+  if (!usesRays() || receiver.weight <= 0.0F) return false;
+  WeakSenders all = weak;
+  for (const Sender sender : senders) {
+    if (sender >= firstPortal || unshot_.highest[sender] <= 0.0F) continue;
+    addWeak(all, receiver, sender);
+    if (raysNeeded(all.variance_lm2) > raysInsteadOfLinks || !takesWeak(receiver, all)) return false;
+  }
+  weak = std::move(all);
+  return true;
+}
+
+template <int K>
+Received<K> Interactions<K>::receiveWeak(const Receiver& receiver, WeakSenders& weak, Tally& tally) const {
+  const auto rays =
+      static_cast<std::uint32_t>(std::clamp(raysNeeded(weak.variance_lm2), weakRaysLeast, weakRaysMost));
+  tally.rays += rays;
+  return lightOfWeak(world_, tree_, unshot_, treeSideOf_, receiver, weak.nodes, rays);
 }
 
 template <int K>
@@ -191,24 +255,34 @@ Link Interactions<K>::measureLink(const Receiver& receiver, NodeIndex sender) co
         cosines * tree_.area_m2[sender] / (std::numbers::pi_v<float> * seen.distance_m * seen.distance_m);
     link.spread = Link::packSpread(3.0F * receiver.radius_m / seen.distance_m);
   } else {
-    const auto polygon = tree_.polygon(sender);
-    float low = 1.0F;
-    float high = 0.0F;
-    float sum = 0.0F;
-    const std::size_t count = quadratureCount(receiver.corners);
-    for (std::size_t i = 0; i < count; ++i) {
-      const glm::vec3 point = quadraturePoint(receiver.corners, receiver.centre, i);
-      const bool inFront = glm::dot(point - tree_.centre[sender], tree_.normal(sender)) > 0.0F;
-      const float own = inFront ? pointToPolygon(point, receiver.normal, polygon) : 0.0F;
-      low = std::min(low, own);
-      high = std::max(high, own);
-      sum += own;
-    }
-    link.formFactor = sum / static_cast<float>(count);
-    link.spread =
-        Link::packSpread(link.formFactor > 0.0F ? cornerRise * (high - low) / link.formFactor : 0.0F);
+    measureNear(receiver, sender, apart, link);
   }
   return link;
+}
+
+// Points of the receiver tell how the form factor varies over it, and their mean is right but where it rises
+// too steeply between them.
+template <int K>
+void Interactions<K>::measureNear(const Receiver& receiver, NodeIndex sender, float apart, Link& link) const {
+  const auto polygon = tree_.polygon(sender);
+  const glm::vec3& normal = tree_.normal(sender);
+  float low = 1.0F;
+  float high = 0.0F;
+  float sum = 0.0F;
+  const std::size_t count = quadratureCount(receiver.corners);
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec3 point = quadraturePoint(receiver.corners, receiver.centre, i);
+    const bool inFront = glm::dot(point - tree_.centre[sender], normal) > 0.0F;
+    const float own = inFront ? pointToPolygon(point, receiver.normal, polygon) : 0.0F;
+    low = std::min(low, own);
+    high = std::max(high, own);
+    sum += own;
+  }
+  link.formFactor = sum / static_cast<float>(count);
+  if (apart > touchingApart && std::max(receiver.corners.size(), polygon.size()) <= contourCornersMost) {
+    link.formFactor = meanFormFactor(receiver.corners, receiver.normal, receiver.area_m2, polygon, normal);
+  }
+  link.spread = Link::packSpread(link.formFactor > 0.0F ? cornerRise * (high - low) / link.formFactor : 0.0F);
 }
 
 // By the share of the domain's light that a link could carry at most: independent of the light itself, so a
@@ -325,12 +399,42 @@ float Interactions<K>::heldSquare(NodeIndex sender, float distance_m, float rece
   return std::max(nearest_m * nearest_m, tree_.area_m2[sender] / (2.0F * std::numbers::pi_v<float>));
 }
 
+// What a divided sender brings beyond its mean radiosity times its form factor: its brighter parts may be
+// those that the receiver sees best. Left out, that errs the same way for all receivers, so it is sampled: a
+// few pairs of spots give the covariance of radiosity and kernel, too noisy for one link but right over many.
+template <int K>
+Columns<K> Interactions<K>::unevenLight(const Receiver& receiver, NodeIndex sender) const {
+  constexpr std::uint32_t count = 4;
+  const std::uint64_t turn = mixKeys(tree_.key[sender], receiver.key);
+  const float nearest_m = 0.25F * std::min(receiver.radius_m, tree_.radius_m[sender]);
+  const glm::vec3& normal = tree_.normal(sender);
+  Columns<K> weighted;
+  Columns<K> radiosity;
+  float kernel = 0.0F;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const glm::vec3& from = (*receiver.spots)[(i + (turn >> 8U)) % spotsOfNode];
+    const glm::vec3& to = tree_.spots[sender][(i * (2U * (turn & 3U) + 1U) + (turn >> 16U)) % spotsOfNode];
+    const glm::vec3 way = to - from;
+    const float squared = std::max(glm::dot(way, way), nearest_m * nearest_m);
+    const float own = std::max(glm::dot(way, receiver.normal), 0.0F) *
+                      std::max(-glm::dot(way, normal), 0.0F) / (squared * squared);
+    const Columns<K>& sent = unshot_.radiosity_lm_m2[tree_.leafAt(sender, to)];
+    weighted += own * sent;
+    radiosity += sent;
+    kernel += own;
+  }
+  const float scale = tree_.area_m2[sender] * std::numbers::inv_pi_v<float> / static_cast<float>(count - 1);
+  return scale * (weighted - (kernel / static_cast<float>(count)) * radiosity);
+}
+
 template <int K>
 void Interactions<K>::addToElement(Received<K>& next, const Receiver& receiver, NodeIndex sender,
                                    const Link& link) const {
   const Received<K> even{unshot_.radiosity_lm_m2[sender], 1.0F};
   if (!tree_.isCluster(sender)) {
     next += (link.formFactor * link.visible()) * even;
+    if (unshot_.highest[sender] > unshot_.lowest[sender])
+      next.irradiance_lx += link.visible() * unevenLight(receiver, sender);
     return;
   }
   const glm::vec3 way = tree_.centre[sender] - receiver.centre;
@@ -432,26 +536,30 @@ Verdict Interactions<K>::receiveFromPortal(const Receiver& receiver, const Porta
   constexpr float most = 64.0F;
   const PortalSight sight = lookAtPortal(light_, portal, receiver);
   if (sight.light_lx <= 0.0F) return Verdict::nothing;
-  const float power = sight.light_lx * receiver.weight;
+  const float power_lm = sight.light_lx * receiver.weight;
   if (receiver.isCluster()) {
-    if (power > threshold_lm && 0.5F * sight.rise_lx * receiver.weight > threshold_lm)
+    if (power_lm > threshold_lm && 0.5F * sight.rise_lx * receiver.weight > threshold_lm)
       return Verdict::refineReceiver;
     const auto six = clusterLightFromPortal(light_, portal, tree_, receiver.node, tally.rays);
     for (std::size_t k = 0; k < 6; ++k) incoming.six[k].irradiance_lx += six[k];
     return Verdict::accept;
   }
-  if (power > threshold_lm) {
-    const float visible = seenOfPortal(world_, portal, receiver);
+  const auto isUneven = [&](float visible) {
+    const float riseError_lm = linearDeviation * sight.rise_lx * receiver.weight * visible;
+    const float shadowError_lm = 0.5F * power_lm * std::sqrt(visible * (1.0F - visible));
+    return std::max(riseError_lm, shadowError_lm) > threshold_lm && canDivide(receiver);
+  };
+  if (power_lm > threshold_lm) {
     tally.rays += spotsOfNode;
-    if (visible <= 0.0F) return Verdict::nothing;
-    const float riseError = linearDeviation * sight.rise_lx * receiver.weight * visible;
-    const float shadowError = 0.5F * power * std::sqrt(visible * (1.0F - visible));
-    if (std::max(riseError, shadowError) > threshold_lm && canDivide(receiver))
-      return Verdict::refineReceiver;
+    if (isUneven(seenOfPortal(world_, portal, receiver))) return Verdict::refineReceiver;
   }
-  const float excess = deviation * power / threshold_lm;
+  const float excess = deviation * power_lm / threshold_lm;
   const float samples = std::clamp(excess * excess, fewest, most);
-  incoming.own.irradiance_lx += elementLightFromPortal(light_, portal, receiver, sight, samples, tally.rays);
+  const PortalLight<K> light = elementLightFromPortal(light_, portal, receiver, sight, samples);
+  tally.rays += light.rays;
+  // A shadow that slips between the few spots does not slip between the samples.
+  if (isUneven(light.visible)) return Verdict::refineReceiver;
+  incoming.own.irradiance_lx += light.illuminance_lx;
   return Verdict::accept;
 }
 

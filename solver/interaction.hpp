@@ -87,7 +87,7 @@ struct Tally {
 };
 
 /// Answers of the oracle.
-enum class Verdict { nothing, accept, refineSender, refineReceiver };
+enum class Verdict { nothing, accept, weak, refineSender, refineReceiver };
 
 /// An end of an interaction that sends: a node of the tree, the open sky, or a portal of the domain.
 using Sender = std::uint32_t;
@@ -99,6 +99,13 @@ struct Candidate {
   NodeIndex sender;
   Link link;
   bool isKnown = false;  ///< from the cache
+};
+
+/// The senders that a receiver has left to rays. None holds another.
+struct WeakSenders {
+  std::vector<NodeIndex> nodes;
+  float power_lm = 0.0F;      ///< that they could send together, were nothing in their way
+  float variance_lm2 = 0.0F;  ///< of one ray that stands for all of them
 };
 
 /// The rays of many links to one receiver, cast together; kept by a task between receivers.
@@ -141,6 +148,16 @@ class Interactions {
     return unshot_.strength[candidate.sender] * candidate.link.formFactor * receiver.weight;
   }
 
+  /// Adds a sender that is too weak for a link of its own.
+  void addWeak(WeakSenders& weak, const Receiver& receiver, NodeIndex sender) const;
+  /// Whether a receiver may take what weak senders bring as one mean.
+  [[nodiscard]] bool takesWeak(const Receiver& receiver, const WeakSenders& weak) const;
+  /// Adds `senders` to the weak ones and says so, if rays for all of them are cheaper than to look for links.
+  [[nodiscard]] bool leavesToRays(const Receiver& receiver, std::span<const Sender> senders,
+                                  WeakSenders& weak) const;
+  /// What the weak senders bring.
+  Received<K> receiveWeak(const Receiver& receiver, WeakSenders& weak, Tally& tally) const;
+
   /// Light from a portal or the open sky: judged, and on `accept` added at once.
   Verdict receiveFromOutside(const Receiver& receiver, Sender sender, Incoming<K>& incoming,
                              Tally& tally) const;
@@ -166,11 +183,18 @@ class Interactions {
   [[nodiscard]] Verdict judgePower(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
   [[nodiscard]] Verdict judgeCluster(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
   [[nodiscard]] Verdict judgeElement(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
+  void measureNear(const Receiver& receiver, NodeIndex sender, float apart, Link& link) const;
   [[nodiscard]] std::uint32_t raysOf(const Receiver& receiver, const Link& link) const;
   void layRays(const Receiver& receiver, const Candidate& candidate, RayBatch& batch) const;
   [[nodiscard]] float uneven(NodeIndex sender) const;
+  /// What is too weak for a link of its own comes by rays, but where links are to be stored or counted.
+  [[nodiscard]] bool usesRays() const { return settings_.oracle == Oracle::error && !linksDark; }
+
+  /// For the noise that rays may have, by the variance of one.
+  [[nodiscard]] float raysNeeded(float variance_lm2) const;
 
   void addToElement(Received<K>& next, const Receiver& receiver, NodeIndex sender, const Link& link) const;
+  [[nodiscard]] Columns<K> unevenLight(const Receiver& receiver, NodeIndex sender) const;
   void addToCluster(SixReceived<K>& next, const Receiver& receiver, NodeIndex sender, const Link& link) const;
   [[nodiscard]] float heldSquare(NodeIndex sender, float distance_m, float receiverRadius_m) const;
   [[nodiscard]] Received<K> sentAlong(NodeIndex cluster, const glm::vec3& direction) const;
@@ -188,6 +212,7 @@ class Interactions {
   bool isOpen_;
   float totalWeight_;
   std::vector<PortalSender<K>> portals_;
+  std::vector<std::uint32_t> treeSideOf_;  // #sides of the building; noNode: another domain's
 };
 
 }  // namespace clerestory

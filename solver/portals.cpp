@@ -11,8 +11,20 @@
 #include <geometry/sampling.hpp>
 #include <solver/formfactor.hpp>
 
+#include "sphericalpolygon.hpp"
+
 namespace clerestory {
 namespace {
+
+constexpr float nearSamples = 8.0F;  // of a near element, whose points see different parts of the pane
+
+/// Whether the portal's form factor may rise steeply over an element.
+template <int K>
+bool isNear(const PortalSender<K>& portal, const Receiver& element) {
+  const float distance_m = glm::length(portal.centre - element.centre);
+  return element.radius_m + portal.radius_m > touchingApart * distance_m &&
+         std::max(element.corners.size(), portal.polygon.size()) <= contourCornersMost;
+}
 
 /// Exitance that a portal shows towards a point, were nothing outdoors but sky and ground; not less than half
 /// of what it lets in on average, since facades outdoors may be brighter than the sky there.
@@ -93,6 +105,13 @@ PortalSight lookAtPortal(const SolvedLight<K>& light, const PortalSender<K>& por
     sight.light_lx += own_lx / static_cast<float>(count);
   }
   sight.rise_lx = cornerRise * (high - low);
+  if (isNear(portal, receiver)) {
+    const float exact =
+        meanFormFactor(receiver.corners, receiver.normal, receiver.area_m2, portal.polygon, portal.inward);
+    sight.light_lx = sight.formFactor > 0.0F ? sight.light_lx * exact / sight.formFactor
+                                             : exact * exitanceTowards(light, portal, receiver.centre);
+    sight.formFactor = exact;
+  }
   return sight;
 }
 
@@ -112,44 +131,42 @@ float seenOfPortal(const World& world, const PortalSender<K>& portal, const Rece
 }
 
 template <int K>
-Columns<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
-                                  const Receiver& element, const PortalSight& sight, float samples,
-                                  std::uint64_t& rays) {
+PortalLight<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
+                                      const Receiver& element, const PortalSight& sight, float samples) {
   const World& world = light.world();
   const Portal& own = world.building.portals[portal.portal];
-  const Sequence sequence(mixKeys(element.key, 0x9a3e + std::uint64_t{portal.portal}));
-  const glm::vec3 middle = element.centre + rayOffset_m * element.normal;
-  // Each sample leaves from a point of its own, so that one set of rays integrates over pane and element.
-  std::uint32_t number = 0;
-  const auto seenFrom = [&](const glm::vec3& onPane) {
-    const glm::vec3 point =
-        pointOnPolygon<glm::vec3>(element.corners, sequence(number, 0), sequence(number, 1));
-    ++number;
-    return light.throughPortal(own, point + rayOffset_m * element.normal, onPane);
-  };
-  const float middleFactor = pointToPolygon(middle, element.normal, portal.polygon);
-  if (middleFactor > 0.5F * sight.formFactor) {
-    const DirectLight<K> direct =
-        directFromPolygon<K>(world.layout, middle, element.normal, portal.polygon, {0.0F, samples},
-                             mixKeys(element.key, portal.portal), seenFrom);
-    rays += direct.rays;
-    return (sight.formFactor / middleFactor) * direct.illuminance_lx;
-  }
-  // The middle sees less of the pane than the corners do: it has no say here.
+  const Sequence onPortal(mixKeys(element.key, portal.portal));
+  const Sequence onElement(mixKeys(element.key, 0x9a3e + std::uint64_t{portal.portal}));
+  const glm::vec3 lift = rayOffset_m * element.normal;
+  const SphericalPolygon fromMiddle(element.centre + lift, element.normal, portal.polygon);
+  // Near by, or where the middle sees nothing, each point of the element has a view of the pane of its own.
+  const bool near = isNear(portal, element) || fromMiddle.solidAngle_sr() <= 0.0;
+  const auto count = static_cast<std::uint32_t>(std::ceil(near ? std::max(samples, nearSamples) : samples));
+  PortalLight<K> result;
   Columns<K> sum;
-  const std::size_t count = quadratureCount(element.corners);
-  for (std::size_t i = 0; i < count; ++i) {
+  float weights = 0.0F;
+  for (std::uint32_t i = 0; i < count; ++i) {
     const glm::vec3 point =
-        quadraturePoint(element.corners, element.centre, i) + rayOffset_m * element.normal;
-    if (glm::dot(point - portal.centre, portal.inward) <= 0.0F) continue;
-    const DirectLight<K> direct = directFromPolygon<K>(
-        world.layout, point, element.normal, portal.polygon, {0.0F, samples / static_cast<float>(count)},
-        mixKeys(element.key, portal.portal + (i + 1) * 0x10001U),
-        [&](const glm::vec3& onPane) { return light.throughPortal(own, point, onPane); });
-    rays += direct.rays;
-    sum += (1.0F / static_cast<float>(count)) * direct.illuminance_lx;
+        pointOnPolygon<glm::vec3>(element.corners, onElement(i, 2), onElement(i, 3)) + lift;
+    const glm::vec3 eye = near ? point : element.centre + lift;
+    const SphericalPolygon seen = near ? SphericalPolygon(point, element.normal, portal.polygon) : fromMiddle;
+    if (seen.solidAngle_sr() <= 0.0) continue;
+    const glm::vec3 direction = seen.direction(onPortal(i, 0), onPortal(i, 1));
+    const float approach = glm::dot(direction, portal.inward);
+    const float cosine = glm::dot(direction, element.normal);
+    if (approach >= 0.0F || cosine <= 0.0F) continue;
+    const glm::vec3 onPane = eye + (glm::dot(portal.centre - eye, portal.inward) / approach) * direction;
+    const float weight = static_cast<float>(seen.solidAngle_sr()) * cosine;
+    weights += weight;
+    ++result.rays;
+    if (world.rays.occluded(point, onPane, RayScene::Barrier::opaque)) continue;
+    result.visible += weight;
+    sum += weight * light.behindPortal(own, point, onPane);
   }
-  return sum;
+  if (weights <= 0.0F) return result;
+  result.visible = std::min(result.visible / weights, 1.0F);
+  result.illuminance_lx = (std::numbers::pi_v<float> * sight.formFactor / weights) * sum;
+  return result;
 }
 
 template <int K>
@@ -177,13 +194,13 @@ std::array<Columns<K>, 6> clusterLightFromPortal(const SolvedLight<K>& light, co
   return six;
 }
 
-#define CLERESTORY_INSTANTIATE(K)                                                                            \
-  template std::vector<PortalSender<K>> portalsOf<K>(const SolvedLight<K>&, std::int32_t, std::uint32_t);    \
-  template PortalSight lookAtPortal<K>(const SolvedLight<K>&, const PortalSender<K>&, const Receiver&);      \
-  template float seenOfPortal<K>(const World&, const PortalSender<K>&, const Receiver&);                     \
-  template Columns<K> elementLightFromPortal<K>(const SolvedLight<K>&, const PortalSender<K>&,               \
-                                                const Receiver&, const PortalSight&, float, std::uint64_t&); \
-  template std::array<Columns<K>, 6> clusterLightFromPortal<K>(                                              \
+#define CLERESTORY_INSTANTIATE(K)                                                                         \
+  template std::vector<PortalSender<K>> portalsOf<K>(const SolvedLight<K>&, std::int32_t, std::uint32_t); \
+  template PortalSight lookAtPortal<K>(const SolvedLight<K>&, const PortalSender<K>&, const Receiver&);   \
+  template float seenOfPortal<K>(const World&, const PortalSender<K>&, const Receiver&);                  \
+  template PortalLight<K> elementLightFromPortal<K>(const SolvedLight<K>&, const PortalSender<K>&,        \
+                                                    const Receiver&, const PortalSight&, float);          \
+  template std::array<Columns<K>, 6> clusterLightFromPortal<K>(                                           \
       const SolvedLight<K>&, const PortalSender<K>&, const Hierarchy&, NodeIndex, std::uint64_t&);
 CLERESTORY_INSTANTIATE(1)
 CLERESTORY_INSTANTIATE(2)

@@ -44,11 +44,18 @@ PortalSight lookAtPortal(const SolvedLight<K>& light, const PortalSender<K>& por
 template <int K>
 float seenOfPortal(const World& world, const PortalSender<K>& portal, const Receiver& receiver);
 
-/// Mean illuminance of an element from a portal, by `samples` pairs of points at least. Adds to `rays`.
+/// What samples between an element and a portal have told.
 template <int K>
-Columns<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
-                                  const Receiver& element, const PortalSight& sight, float samples,
-                                  std::uint64_t& rays);
+struct PortalLight {
+  Columns<K> illuminance_lx;  ///< mean over the element
+  float visible = 0.0F;       ///< share of what the portal could bring that nothing stands in the way of
+  std::uint64_t rays = 0;
+};
+
+/// Light of an element from a portal, by `samples` pairs of points at least.
+template <int K>
+PortalLight<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
+                                      const Receiver& element, const PortalSight& sight, float samples);
 
 /// Mean illuminances of a cluster's contents by the six directions that it keeps its light by.
 template <int K>

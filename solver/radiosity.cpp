@@ -45,6 +45,12 @@ template <int K>
 Columns<K> SolvedLight<K>::throughPortal(const Portal& portal, const glm::vec3& receiver,
                                          const glm::vec3& onPane) const {
   if (world_.rays.occluded(receiver, onPane, RayScene::Barrier::opaque)) return {};
+  return behindPortal(portal, receiver, onPane);
+}
+
+template <int K>
+Columns<K> SolvedLight<K>::behindPortal(const Portal& portal, const glm::vec3& receiver,
+                                        const glm::vec3& onPane) const {
   const glm::vec3 direction = glm::normalize(onPane - receiver);
   const float cosine = std::abs(glm::dot(direction, world_.normalOf(2 * portal.piece)));
   const float transmittance = world_.portalFactor() * world_.glassOf(portal.piece).transmittance(cosine) *

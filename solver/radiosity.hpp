@@ -47,7 +47,10 @@ class SolvedLight {
   /// Luminance seen outdoors along a ray that starts outside or on the outer face of a pane. [cd/m²]
   [[nodiscard]] Columns<K> outsideLuminance(const glm::vec3& from, const glm::vec3& direction) const;
 
-  /// Luminance that reaches `receiver` through a portal's point, after the pane's transmittance. [cd/m²]
+  /// Luminance that a portal's point shows towards `receiver`, after the pane's transmittance. [cd/m²]
+  [[nodiscard]] Columns<K> behindPortal(const Portal& portal, const glm::vec3& receiver,
+                                        const glm::vec3& onPane) const;
+  /// The same, and black where something stands between. [cd/m²]
   [[nodiscard]] Columns<K> throughPortal(const Portal& portal, const glm::vec3& receiver,
                                          const glm::vec3& onPane) const;
 

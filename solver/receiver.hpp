@@ -48,5 +48,7 @@ inline glm::vec3 quadraturePoint(std::span<const glm::vec3> corners, const glm::
   return centre + share * (corners[corner] - centre);
 }
 inline constexpr float cornerRise = 1.7F;  ///< of the whole rise between such points
+inline constexpr float touchingApart =
+    0.5F;  ///< (radii) / distance above which such points may miss the rise
 
 }  // namespace clerestory

@@ -48,9 +48,7 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
   Columns<K> unshotPower_lm = transport.powerOf(unshot);
   const Columns<K> entering_lm = transport.enteringPower_lm();
   float before_lm = world.layout.strength(unshotPower_lm) + world.layout.strength(entering_lm);
-  const bool isOpen = world.building.domains[static_cast<std::size_t>(domain)].open;
-  solved.balance.emitted_lm =
-      luminanceOf(world.layout.totalColour(isOpen ? unshotPower_lm : unshotPower_lm + entering_lm));
+  const Columns<K> emitted_lm = unshotPower_lm;
   if (!(before_lm > 0.0F)) return solved;
   transport.setFirstLight(before_lm);
 
@@ -59,6 +57,9 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
     const std::size_t nodesBefore = tree.size();
     const std::size_t cached = cache.size();
     transport.send(unshot, step == 1);
+    if (step == 1)
+      solved.balance.emitted_lm =
+          luminanceOf(world.layout.totalColour(emitted_lm + transport.enteredPower_lm()));
     inheritValues(tree, nodesBefore, sum);
     unshot.resize(tree.size());
     for (NodeIndex node = 0; node < tree.size(); ++node) {

@@ -46,8 +46,7 @@ void Transport<K>::setFirstLight(float firstLight_lm) {
 template <int K>
 void Transport<K>::send(const std::vector<Columns<K>>& leaves, bool withOutside) {
   pull(leaves);
-  const Columns<K> entering = withOutside && !isOpen_ ? interactions_.portalFlux_lm() : Columns<K>{};
-  const Columns<K> sent = powerOf(unshot_.radiosity_lm_m2) + entering;
+  const Columns<K> entering_lm = withOutside && !isOpen_ ? interactions_.portalFlux_lm() : Columns<K>{};
   std::vector<Sender> senders;
   if (links_ == Links::madeAnew || cache_.size() == 0) senders.push_back(0);
   if (withOutside) {
@@ -57,7 +56,7 @@ void Transport<K>::send(const std::vector<Columns<K>>& leaves, bool withOutside)
   transportLight(std::move(senders));
   mergeGrown();
   pushPull();
-  mend(sent, withOutside);
+  mend(powerOf(unshot_.radiosity_lm_m2), entering_lm);
 }
 
 template <int K>
@@ -77,6 +76,7 @@ void Transport<K>::receive(const Receiver& receiver, std::vector<Sender> senders
   std::vector<Sender> down = settle(receiver, std::move(senders), incoming, work);
   if (receiver.isCluster()) {
     receivedByDirection_[receiver.node] = incoming.six;
+    received_[receiver.node] = incoming.own;
   } else if (receiver.node != noNode) {
     received_[receiver.node] = incoming.own;
   } else {
@@ -98,10 +98,12 @@ std::vector<Sender> Transport<K>::settle(const Receiver& receiver, std::vector<S
   }
   std::vector<Sender> down;
   std::vector<Sender> next;
+  WeakSenders weak;
   std::vector<Candidate> candidates;
   RayBatch batch;
   const auto decide = [&](Verdict verdict, Sender sender) {
     if (verdict == Verdict::refineReceiver) down.push_back(sender);
+    if (verdict == Verdict::weak) interactions_.addWeak(weak, receiver, sender);
     if (verdict == Verdict::refineSender) {
       next.push_back(tree_.firstChild[sender]);
       next.push_back(tree_.firstChild[sender] + 1);
@@ -110,7 +112,9 @@ std::vector<Sender> Transport<K>::settle(const Receiver& receiver, std::vector<S
   while (!senders.empty()) {
     next.clear();
     candidates.clear();
+    const bool byRays = interactions_.leavesToRays(receiver, senders, weak);
     for (const Sender sender : senders) {
+      if (byRays && sender < firstPortal) continue;
       if (sender >= firstPortal) {
         const Verdict verdict = interactions_.receiveFromOutside(receiver, sender, incoming, work.tally);
         work.tally.links += verdict == Verdict::accept ? 1U : 0U;
@@ -141,6 +145,12 @@ std::vector<Sender> Transport<K>::settle(const Receiver& receiver, std::vector<S
       keep(receiver, candidate, work);
     }
     std::swap(senders, next);
+  }
+  if (!interactions_.takesWeak(receiver, weak)) {
+    down.insert(down.end(), weak.nodes.begin(), weak.nodes.end());
+  } else if (!weak.nodes.empty()) {
+    ++work.tally.links;
+    incoming.own += interactions_.receiveWeak(receiver, weak, work.tally);
   }
   return down;
 }
@@ -231,10 +241,8 @@ void Transport<K>::pushPull() {
   for (NodeIndex node = 0; node < tree_.size(); ++node) {
     if (tree_.isLeaf(node)) continue;
     for (NodeIndex child = tree_.firstChild[node]; child < tree_.firstChild[node] + 2; ++child) {
-      if (!tree_.isCluster(node)) {
-        received_[child] += received_[node];
-        continue;
-      }
+      received_[child] += received_[node];
+      if (!tree_.isCluster(node)) continue;
       for (std::size_t k = 0; k < 6; ++k) {
         const Received<K>& from = receivedByDirection_[node][k];
         if (tree_.isCluster(child)) {
@@ -301,34 +309,69 @@ Columns<K> Transport<K>::receivedPower() const {
 }
 
 // In a closed domain all power sent is received. Sampled visibility misses that by some tenths of a per cent,
-// which a bright room's hundred reflections would add up.
+// which a bright room's hundred reflections would add up. Light from outside has only one step to be missed
+// in, and its receivers know it better than the rays through the panes do: it stays as it was received.
 template <int K>
-void Transport<K>::mend(const Columns<K>& sent_lm, bool withOutside) {
-  if (!isOpen_) {
-    const double sent = static_cast<double>(world_.layout.strength(sent_lm));
-    sent_lm_ += sent;
-    missed_lm_ += std::abs(sent - static_cast<double>(world_.layout.strength(receivedPower())));
-  }
-  // Light from outside comes by no link, so views say nothing of it.
-  if (!withOutside || interactions_.sendersOutside().empty()) closeViews();
-  if (isOpen_ || world_.rays.hasInnerGlass()) return;
-  const Columns<K> power = receivedPower();
+void Transport<K>::mend(const Columns<K>& sent_lm, const Columns<K>& entering_lm) {
+  closeViews();
+  entered_lm_ = {};
+  if (isOpen_) return;
+  const Columns<K> power_lm = receivedPower();
+  const double expected_lm = static_cast<double>(world_.layout.strength(sent_lm + entering_lm));
+  missed_lm_ += std::abs(expected_lm - static_cast<double>(world_.layout.strength(power_lm)));
+  sent_lm_ += expected_lm;
   Columns<K> factor;
-  for (int c = 0; c < K; ++c)
-    factor[c] = power[c] > 0.0F ? std::clamp(sent_lm[c] / power[c], 0.5F, 2.0F) : 1.0F;
+  for (int c = 0; c < K; ++c) {
+    const bool enters = entering_lm[c] > 0.0F;
+    if (enters) entered_lm_[c] = power_lm[c];
+    const bool keeps = enters || world_.rays.hasInnerGlass() || !(power_lm[c] > 0.0F);
+    factor[c] = keeps ? 1.0F : std::clamp(sent_lm[c] / power_lm[c], 0.5F, 2.0F);
+  }
   for (Received<K>& received : received_) received.irradiance_lx *= factor;
 }
 
-// No receiver's view is larger than 1, and in a closed domain where everything sends it is 1. What a leaf's
-// links make of it tells their common error, which dividing takes out: links kept at a parent err alike for a
-// leaf in a corner.
+// In a closed domain where everything sends, a leaf's view is 1, and elsewhere at most 1. What its links make
+// of it tells their common error: those kept at a parent err alike for a leaf in a corner. Dividing takes it
+// out.
 template <int K>
 void Transport<K>::closeViews() {
-  const bool allSend = !isOpen_ && !world_.rays.hasInnerGlass() && unshot_.lowest[0] > 0.0F;
+  if (isOpen_ || world_.rays.hasInnerGlass() || !(unshot_.lowest[0] > 0.0F)) {
+    evenViews();
+    return;
+  }
+  for (NodeIndex node = 0; node < tree_.size(); ++node) {
+    Received<K>& received = received_[node];
+    if (tree_.isLeaf(node) && received.view > 0.0F) received = (1.0F / received.view) * received;
+  }
+}
+
+// Where some senders are dark a view below 1 may be right; one above 1 is not, and what is too much there is
+// missing elsewhere on the same side: a leaf has more than its share of what a parent's link brought.
+template <int K>
+void Transport<K>::evenViews() {
+  struct Side {
+    Columns<K> excess_lm, room_lm;
+  };
+  std::vector<Side> sides(tree_.sides.size());
+  const auto whole = [](const Received<K>& received) { return (1.0F / received.view) * received; };
+  for (NodeIndex node = 0; node < tree_.size(); ++node) {
+    const Received<K>& received = received_[node];
+    if (!tree_.isLeaf(node) || received.view <= 0.0F) continue;
+    Side& side = sides[tree_.treeSide[node]];
+    const Columns<K> change_lm =
+        tree_.area_m2[node] * (whole(received).irradiance_lx - received.irradiance_lx);
+    (received.view > 1.0F ? side.excess_lm : side.room_lm) += change_lm;
+  }
   for (NodeIndex node = 0; node < tree_.size(); ++node) {
     Received<K>& received = received_[node];
     if (!tree_.isLeaf(node) || received.view <= 0.0F) continue;
-    if (allSend || received.view > 1.0F) received = (1.0F / received.view) * received;
+    const Side& side = sides[tree_.treeSide[node]];
+    const Columns<K> change_lx = whole(received).irradiance_lx - received.irradiance_lx;
+    for (int c = 0; c < K; ++c) {
+      const float moved_lm = std::min(-side.excess_lm[c], side.room_lm[c]);
+      const float offered_lm = received.view > 1.0F ? -side.excess_lm[c] : side.room_lm[c];
+      if (offered_lm > 0.0F) received.irradiance_lx[c] += moved_lm / offered_lm * change_lx[c];
+    }
   }
 }
 

@@ -40,6 +40,8 @@ class Transport {
   [[nodiscard]] Columns<K> powerOf(const std::vector<Columns<K>>& perNode) const;
   /// Power of the light that enters from outside, an estimate in open domains. [lm]
   [[nodiscard]] Columns<K> enteringPower_lm() const;
+  /// Power that the last `send` brought in through portals, as its receivers add it up. [lm]
+  [[nodiscard]] const Columns<K>& enteredPower_lm() const { return entered_lm_; }
   /// Sets what one interaction may err by, from the light that the domain starts with. [lm]
   void setFirstLight(float firstLight_lm);
 
@@ -77,8 +79,9 @@ class Transport {
   void mergeGrown();
   void pushPull();
   void pull(const std::vector<Columns<K>>& leaves);
-  void mend(const Columns<K>& sent_lm, bool withOutside);
+  void mend(const Columns<K>& sent_lm, const Columns<K>& entering_lm);
   void closeViews();
+  void evenViews();
   [[nodiscard]] Columns<K> receivedPower() const;
 
   const World& world_;
@@ -93,6 +96,7 @@ class Transport {
   std::vector<SixReceived<K>> receivedByDirection_;  // #trunk
   std::vector<Work> work_;                           // #trunk
   Interactions<K> interactions_;
+  Columns<K> entered_lm_;
   double sent_lm_ = 0.0, missed_lm_ = 0.0;
 };
 

@@ -453,5 +453,49 @@ TEST(PolygonToPolygon, OnlyTheReceiversFrontSees) {
   EXPECT_EQ(polygonToPolygon(floor, ceiling, 1e-4), 0.0);
 }
 
+float meanOf(const Polygon& receiver, const Polygon& sender) {
+  const std::vector<glm::vec3> own(receiver.begin(), receiver.end());
+  const std::vector<glm::vec3> other(sender.begin(), sender.end());
+  const auto normal = [](const Polygon& p) {
+    return glm::vec3(glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0])));
+  };
+  const auto area =
+      static_cast<float>(glm::length(glm::cross(receiver[1] - receiver[0], receiver[2] - receiver[0])));
+  return meanFormFactor(own, normal(receiver), area, other, normal(sender));
+}
+
+/// x from x0 to x1, z from z0 to z1, in the plane y; looks along +y.
+Polygon uprightAhead(double x0, double x1, double y, double z0, double z1) {
+  return {{x1, y, z0}, {x0, y, z0}, {x0, y, z1}, {x1, y, z1}};
+}
+
+// Parallelograms against the cubature; what the header promises of each.
+TEST(MeanFormFactor, TouchingAndNearPolygons) {
+  const Polygon floor = horizontal(0, 1, 0, 1, 0);
+  const auto expect = [](const Polygon& receiver, const Polygon& sender, double relative) {
+    const double exact = polygonToPolygon(receiver, sender, 1e-8);
+    EXPECT_NEAR(meanOf(receiver, sender), exact, relative * exact);
+  };
+  expect(floor, uprightAhead(0, 1, 0, 0, 1), 0.002);
+  expect(uprightAhead(0, 1, 0, 0, 1), floor, 0.002);
+  expect(floor, uprightAhead(1, 2, 0, 0, 1), 0.004);  // at a corner
+  expect(horizontal(0, 3, 0, 2.8, 0), uprightAhead(0.3, 0.5, 0, 0, 0.2),
+         0.004);  // small on a large one's edge
+  expect(uprightAhead(0.3, 0.5, 0, 0, 0.2), horizontal(0, 3, 0, 2.8, 0), 0.004);
+  expect(uprightAhead(0, 3.2, 0, 0, 1.8), horizontal(0, 3.2, 0, 0.15, 0), 0.012);  // a long strip
+  expect(floor, uprightAhead(0, 1, -0.5, 0, 1), 0.001);                            // apart
+  expect(floor, {{0, 0, 0.03}, {0, 1, 0.03}, {1, 1, 0.03}, {1, 0, 0.03}}, 0.001);  // close over it
+}
+
+TEST(MeanFormFactor, OnlyWhatLiesInFrontCounts) {
+  const Polygon floor = horizontal(0, 1, 0, 1, 0);
+  // Half of the wall is below the floor's plane; half of the floor is behind the wall's.
+  EXPECT_NEAR(meanOf(floor, uprightAhead(0, 1, 0, -1, 1)), meanOf(floor, uprightAhead(0, 1, 0, 0, 1)), 1e-6);
+  EXPECT_NEAR(meanOf(horizontal(0, 1, -1, 1, 0), uprightAhead(0, 1, 0, 0, 1)),
+              0.5F * meanOf(floor, uprightAhead(0, 1, 0, 0, 1)), 1e-6);
+  EXPECT_EQ(meanOf(floor, uprightAhead(0, 1, 2, 0, 1)), 0.0F);  // sees its back
+  EXPECT_EQ(meanOf(floor, horizontal(0, 1, 0, 1, 0)), 0.0F);
+}
+
 }  // namespace
 }  // namespace clerestory

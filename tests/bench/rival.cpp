@@ -110,7 +110,6 @@ void iterate(const World& world, Radiosity<K>& radiosity, const std::vector<Node
   const Hierarchy& tree = radiosity.tree;
   radiosity.irradiance_lx = direct_lx;
   std::vector<Columns<K>> reflected_lm_m2(tree.size());
-  const float share = 1.0F / static_cast<float>(settings.raysPerElement);
   for (int iteration = 0; iteration < iterationsMax; ++iteration) {
     double before = 0.0;
     for (const NodeIndex leaf : leaves) {
@@ -119,11 +118,16 @@ void iterate(const World& world, Radiosity<K>& radiosity, const std::vector<Node
           static_cast<double>(tree.area_m2[leaf] * world.layout.strength(radiosity.irradiance_lx[leaf]));
     }
     forEachIndex(leaves.size(), 64, [&](std::size_t i) {
+      // Rays that end on sides without air are left out: shooting too keeps all light in the domain.
       Columns<K> sum;
+      float count = 0.0F;
       for (std::size_t ray = i * settings.raysPerElement; ray < (i + 1) * settings.raysPerElement; ++ray) {
-        if (ends[ray].leaf != noNode) sum += ends[ray].transmittance * reflected_lm_m2[ends[ray].leaf];
+        if (ends[ray].leaf == noNode) continue;
+        sum += ends[ray].transmittance * reflected_lm_m2[ends[ray].leaf];
+        count += 1.0F;
       }
-      radiosity.irradiance_lx[leaves[i]] = direct_lx[leaves[i]] + share * sum;
+      radiosity.irradiance_lx[leaves[i]] = direct_lx[leaves[i]];
+      if (count > 0.0F) radiosity.irradiance_lx[leaves[i]] += (1.0F / count) * sum;
     });
     double after = 0.0;
     for (const NodeIndex leaf : leaves) {

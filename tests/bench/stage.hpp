@@ -150,13 +150,17 @@ double gatherAt(const SolvedLight<K>& light, const Stage<K>& stage, const Place&
   Columns<K> sum = directFromPortals(light, domain, from, normal, samples, key).illuminance_lx +
                    directFromEmitters(light, domain, from, normal, samples, key).illuminance_lx;
   const Sequence sequence(key);
+  Columns<K> reflected;
+  float count = 0.0F;
   for (std::uint32_t i = 0; i < rays; ++i) {
     const glm::vec3 direction = cosineDirection(normal, sequence(i, 0), sequence(i, 1));
     const auto hit = world.rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
     if (!hit || world.building.sideDomain[hit.side()] != domain) continue;
     const glm::vec3 to = from + hit.distance_m * direction;
-    sum += (world.innerTransmittance(from, to) / static_cast<float>(rays)) * light.exitance(hit, to, false);
+    reflected += world.innerTransmittance(from, to) * light.exitance(hit, to, false);
+    count += 1.0F;
   }
+  if (count > 0.0F) sum += (1.0F / count) * reflected;
   return luminanceOf(world.layout.totalColour(sum));
 }
 

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cosine rays from all over a receiver, counted where they meet one of the senders asked for.
+#include "weak.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
+#include <geometry/sampling.hpp>
+
+namespace clerestory {
+namespace {
+
+struct Start {
+  glm::vec3 point, normal;
+};
+
+/// A point of a receiver, even by area for even u, v, w.
+Start startOn(const Hierarchy& tree, const Receiver& receiver, float u, float v, float w) {
+  if (!receiver.isCluster()) return {pointOnPolygon<glm::vec3>(receiver.corners, v, w), receiver.normal};
+  NodeIndex node = receiver.node;
+  while (tree.isCluster(node)) {
+    const NodeIndex first = tree.firstChild[node];
+    const float share = tree.area_m2[first] / tree.area_m2[node];
+    const bool isFirst = u < share || share >= 1.0F;
+    u = isFirst ? u / share : (u - share) / (1.0F - share);
+    node = isFirst ? first : first + 1;
+  }
+  return {pointOnPolygon<glm::vec3>(tree.polygon(node), v, w), tree.normal(node)};
+}
+
+/// The place of a node's first side.
+std::uint32_t firstPlace(const Hierarchy& tree, NodeIndex node) {
+  return node < tree.trunkSize() ? tree.places[node][0] : tree.placeOfSide[tree.treeSide[node]];
+}
+
+/// The leaf of a side at a point if it is one of the senders or below one, else noNode. `senders` are in the
+/// order of their places.
+NodeIndex leafOfSenders(const Hierarchy& tree, std::span<const NodeIndex> senders, std::uint32_t treeSide,
+                        const glm::vec3& point) {
+  const std::uint32_t place = tree.placeOfSide[treeSide];
+  const auto after = std::upper_bound(senders.begin(), senders.end(), place,
+                                      [&](std::uint32_t a, NodeIndex b) { return a < firstPlace(tree, b); });
+  if (after == senders.begin()) return noNode;
+  const NodeIndex last = *(after - 1);
+  const NodeIndex root = tree.sides[treeSide].root;
+  if (last < tree.trunkSize()) return place < tree.places[last][1] ? tree.leafAt(root, point) : noNode;
+  // Elements of one side: the point's way down the tree meets the sender that holds it.
+  const auto before = std::lower_bound(senders.begin(), after, place,
+                                       [&](NodeIndex a, std::uint32_t b) { return firstPlace(tree, a) < b; });
+  NodeIndex node = root;
+  while (std::find(before, after, node) == after) {
+    if (tree.isLeaf(node)) return noNode;
+    node = tree.childAt(node, point);
+  }
+  return tree.leafAt(node, point);
+}
+
+}  // namespace
+
+template <int K>
+Received<K> lightOfWeak(const World& world, const Hierarchy& tree, const Unshot<K>& unshot,
+                        std::span<const std::uint32_t> treeSideOf, const Receiver& receiver,
+                        std::vector<NodeIndex>& senders, std::uint32_t rays) {
+  const auto isBefore = [&](NodeIndex a, NodeIndex b) { return firstPlace(tree, a) < firstPlace(tree, b); };
+  if (!std::is_sorted(senders.begin(), senders.end(), isBefore))
+    std::sort(senders.begin(), senders.end(), isBefore);
+  const Sequence where(mixKeys(receiver.key, 0x3ea4));
+  const Sequence way(mixKeys(receiver.key, 0x3ea5));
+  Received<K> sum;
+  for (std::uint32_t i = 0; i < rays; ++i) {
+    const Start start = startOn(tree, receiver, where(i, 2), where(i, 0), where(i, 1));
+    const glm::vec3 from = start.point + rayOffset_m * start.normal;
+    const glm::vec3 direction = cosineDirection(start.normal, way(i, 0), way(i, 1));
+    const auto hit = world.rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
+    if (!hit || treeSideOf[hit.side()] == noNode) continue;
+    const glm::vec3 to = from + hit.distance_m * direction;
+    const NodeIndex leaf = leafOfSenders(tree, senders, treeSideOf[hit.side()], to);
+    if (leaf == noNode) continue;
+    sum += world.innerTransmittance(from, to) * Received<K>{unshot.radiosity_lm_m2[leaf], 1.0F};
+  }
+  return (1.0F / static_cast<float>(rays)) * sum;
+}
+
+template Received<1> lightOfWeak(const World&, const Hierarchy&, const Unshot<1>&,
+                                 std::span<const std::uint32_t>, const Receiver&, std::vector<NodeIndex>&,
+                                 std::uint32_t);
+template Received<2> lightOfWeak(const World&, const Hierarchy&, const Unshot<2>&,
+                                 std::span<const std::uint32_t>, const Receiver&, std::vector<NodeIndex>&,
+                                 std::uint32_t);
+template Received<4> lightOfWeak(const World&, const Hierarchy&, const Unshot<4>&,
+                                 std::span<const std::uint32_t>, const Receiver&, std::vector<NodeIndex>&,
+                                 std::uint32_t);
+template Received<8> lightOfWeak(const World&, const Hierarchy&, const Unshot<8>&,
+                                 std::span<const std::uint32_t>, const Receiver&, std::vector<NodeIndex>&,
+                                 std::uint32_t);
+
+}  // namespace clerestory
