@@ -90,17 +90,18 @@ std::vector<DividedPolygon> divide(Soup& soup, std::vector<PlanarPolygon> polygo
 
 struct Piece {
   Loop loop;
-  std::uint32_t material, object;
+  std::uint32_t polygon, material, object;
 };
 
 /// Pieces by the coordinates of their corners, then by names.
 std::vector<Piece> orderPieces(const Soup& soup, const NameRanks& ranks,
                                std::vector<DividedPolygon> polygons) {
   std::vector<Piece> pieces;
-  for (DividedPolygon& divided : polygons) {
-    for (Loop& loop : divided.pieces) {
+  for (std::uint32_t i = 0; i < polygons.size(); ++i) {
+    const PlanarPolygon& polygon = polygons[i].polygon;
+    for (Loop& loop : polygons[i].pieces) {
       startAtSmallest(soup.points, loop);
-      pieces.push_back({std::move(loop), divided.polygon.material, divided.polygon.object});
+      pieces.push_back({std::move(loop), i, polygon.material, polygon.object});
     }
   }
   const auto cornerLess = [&](std::uint32_t a, std::uint32_t b) {
@@ -144,6 +145,7 @@ void assemble(const Scene& scene, const Soup& soup, const std::vector<Piece>& pi
   // By place, not by index: points made by different polygons may coincide.
   const auto pointLess = [](const glm::dvec3& a, const glm::dvec3& b) { return lexicographicallyLess(a, b); };
   std::map<glm::dvec3, std::uint32_t, decltype(pointLess)> numberOf(pointLess);
+  std::map<std::uint32_t, std::uint32_t> polygonOf;  // canonical number by the number as read
   Pieces& out = model.pieces;
   for (const Piece& piece : pieces) {
     Loop loop;
@@ -157,6 +159,8 @@ void assemble(const Scene& scene, const Soup& soup, const std::vector<Piece>& pi
     out.polygons.add(loop);
     out.normal.push_back(glm::normalize(doubleArea) + 0.0);
     out.area_m2.push_back(0.5 * glm::length(doubleArea));
+    out.polygon.push_back(
+        polygonOf.try_emplace(piece.polygon, static_cast<std::uint32_t>(polygonOf.size())).first->second);
     out.surface.push_back(surfaceOf.at({piece.object, piece.material}));
     out.material.push_back(piece.material);
   }

@@ -129,6 +129,7 @@ std::vector<std::uint32_t> cutPieces(Pieces& pieces, const CuttersOf& cuttersOf)
       result.polygons.add(corners);
       result.normal.push_back(pieces.normal[piece]);
       result.area_m2.push_back(area_m2);
+      result.polygon.push_back(pieces.polygon[piece]);
       result.surface.push_back(pieces.surface[piece]);
       result.material.push_back(pieces.material[piece]);
       wholeOf.push_back(piece);

@@ -22,8 +22,9 @@ Columns<K> SolvedLight<K>::exitance(const RayScene::Hit& hit, const glm::vec3& p
   if (rootOfSide_[side] == noNode) return {};
   const Radiosity<K>& own = *of(world_.building.sideDomain[side]);
   const NodeIndex leaf = own.tree.leafAt(rootOfSide_[side], point);
-  Columns<K> result = own.reflected(leaf);
-  if (withEmission) result += own.exitance_lm_m2[own.tree.treeSide[leaf]];
+  const std::uint32_t treeSide = own.tree.treeSide[leaf];
+  Columns<K> result = own.reflectance[treeSide] * own.irradianceAt(leaf, point);
+  if (withEmission) result += own.exitance_lm_m2[treeSide];
   return result;
 }
 

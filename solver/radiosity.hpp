@@ -2,6 +2,10 @@
 // A solved domain, and light seen along rays: in it, and from it through its portals to the outside.
 #pragma once
 
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "columns.hpp"
@@ -9,6 +13,20 @@
 #include "world.hpp"
 
 namespace clerestory {
+
+/// Irradiance over an element that varies evenly.
+template <int K>
+struct Plane {
+  Columns<K> level_lx;                    ///< at the element's centroid, so its mean
+  std::array<glm::vec3, K> slope_lx_m{};  ///< of each column, in the element's plane [lx/m]
+
+  /// `way_m` leads from the centroid to the point that is asked about.
+  [[nodiscard]] Columns<K> at(const glm::vec3& way_m) const {
+    Columns<K> irradiance_lx = level_lx;
+    for (int c = 0; c < K; ++c) irradiance_lx[c] += glm::dot(slope_lx_m[static_cast<std::size_t>(c)], way_m);
+    return irradiance_lx;
+  }
+};
 
 /// The light of one domain after the solve.
 template <int K>
@@ -18,7 +36,15 @@ struct Radiosity {
   std::vector<Columns<K>> reflectance;     ///< #sides of the tree
   std::vector<Columns<K>> exitance_lm_m2;  ///< #sides of the tree: own emission
   std::vector<std::uint32_t> emitters;     ///< sides of the tree that have some
+  std::vector<Plane<K>> planes;            ///< #nodes, or empty before `reconstruct`
 
+  /// Irradiance of a point of a leaf: of its plane if there is one, else its mean.
+  [[nodiscard]] Columns<K> irradianceAt(NodeIndex leaf, const glm::vec3& point) const {
+    if (planes.empty()) return irradiance_lx[leaf];
+    Columns<K> irradiance = planes[leaf].at(point - tree.centre[leaf]);
+    for (int c = 0; c < K; ++c) irradiance[c] = std::max(irradiance[c], 0.0F);  // but for rounding at corners
+    return irradiance;
+  }
   [[nodiscard]] Columns<K> reflected(NodeIndex leaf) const {
     return reflectance[tree.treeSide[leaf]] * irradiance_lx[leaf];
   }

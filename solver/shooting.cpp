@@ -51,6 +51,7 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
   const Columns<K> emitted_lm = unshotPower_lm;
   if (!(before_lm > 0.0F)) return solved;
   transport.setFirstLight(before_lm);
+  solved.threshold_lm = transport.threshold_lm();
 
   for (int step = 1; step <= settings.stepsMax; ++step) {
     const Stopwatch watch;

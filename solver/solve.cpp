@@ -8,6 +8,7 @@
 #include <solver/solution.hpp>
 
 #include "outside.hpp"
+#include "reconstruction.hpp"
 #include "sensors.hpp"
 #include "shooting.hpp"
 #include "surfaces.hpp"
@@ -81,7 +82,8 @@ void solveDomains(const World& world, const Study& study, const SolveOptions& op
     for (Diagnosis& diagnosis : solved.diagnoses) addDiagnosis(solution.diagnoses, std::move(diagnosis));
     const Hierarchy& grown = solved.radiosity.tree;
     solution.elements += solved.statistics.empty() ? 0 : solved.statistics.back().elements;
-    solution.hierarchyBytes += grown.bytes() + grown.size() * sizeof(Columns<K>);
+    solution.hierarchyBytes += grown.bytes() + grown.size() * (sizeof(Columns<K>) + sizeof(Plane<K>));
+    reconstruct(world, solved.threshold_lm, solved.radiosity);
     light.add(domain, std::move(solved.radiosity));
   }
 }

@@ -8,7 +8,7 @@ namespace clerestory {
 
 template <int K>
 SolvedDomain<K>::SolvedDomain(const World& world, std::int32_t domainIn, Hierarchy tree)
-    : domain(domainIn), radiosity{std::move(tree), {}, {}, {}, {}} {
+    : domain(domainIn), radiosity{std::move(tree), {}, {}, {}, {}, {}} {
   radiosity.irradiance_lx.resize(radiosity.tree.size());
   for (const TreeSide& side : radiosity.tree.sides) {
     const Material& material = world.materialOf(side.side / 2);

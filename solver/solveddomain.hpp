@@ -18,6 +18,7 @@ struct SolvedDomain {
   Radiosity<K> radiosity;
   std::vector<IterationStatistics> statistics;
   EnergyBalance balance;
+  float threshold_lm = 0.0F;  ///< weighted power that one interaction was allowed to err by
   std::vector<Diagnosis> diagnoses;
 
   /// Dark as yet: what its sides reflect and emit is known.

@@ -20,7 +20,7 @@ struct RayEnd {
 
 template <int K>
 Radiosity<K> unlit(const World& world, Hierarchy tree) {
-  Radiosity<K> radiosity{std::move(tree), {}, {}, {}, {}};
+  Radiosity<K> radiosity{std::move(tree), {}, {}, {}, {}, {}};
   for (const TreeSide& side : radiosity.tree.sides) {
     const Material& material = world.materialOf(side.side / 2);
     const auto number = static_cast<std::uint32_t>(radiosity.reflectance.size());

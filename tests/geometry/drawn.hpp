@@ -97,8 +97,8 @@ inline double totalArea_m2(const CleanModel& model) {
 inline bool samePieces(const CleanModel& a, const CleanModel& b) {
   return a.pieces.points == b.pieces.points && a.pieces.polygons.begin == b.pieces.polygons.begin &&
          a.pieces.polygons.corners == b.pieces.polygons.corners && a.pieces.normal == b.pieces.normal &&
-         a.pieces.area_m2 == b.pieces.area_m2 && a.pieces.surface == b.pieces.surface &&
-         a.pieces.material == b.pieces.material;
+         a.pieces.area_m2 == b.pieces.area_m2 && a.pieces.polygon == b.pieces.polygon &&
+         a.pieces.surface == b.pieces.surface && a.pieces.material == b.pieces.material;
 }
 
 /// Whether every piece is convex about its normal, but for 20 µm.

@@ -28,6 +28,7 @@ struct Pieces {
   PolygonList polygons;            ///< counterclockwise seen from the front; convex
   std::vector<glm::dvec3> normal;  ///< unit
   std::vector<double> area_m2;
+  std::vector<std::uint32_t> polygon;   ///< number of the planar polygon that it is a part of
   std::vector<std::uint32_t> surface;   ///< index into surfaces
   std::vector<std::uint32_t> material;  ///< index into the scene's materials
 
