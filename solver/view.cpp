@@ -16,13 +16,20 @@
 namespace clerestory {
 namespace {
 
-constexpr int cell = 3;            // pixels of a side of a cell of the coarse raster
+constexpr int cell = 3;  // pixels of a side of a cell of the coarse raster
+// Where the rays of a pixel pass through it.
+constexpr std::size_t spotsOfPixel = 4;
+constexpr glm::vec2 spots[spotsOfPixel] = {
+    {0.375F, 0.125F}, {0.875F, 0.375F}, {0.125F, 0.625F}, {0.625F, 0.875F}};
 constexpr int smoothingSteps = 5;  // each doubles the reach: 62 cells after five
 
 struct Camera {
   glm::vec3 eye, forward, right, up;
   float halfHeight;
   int width, height;
+
+  /// Width of a cell of the coarse raster where it is seen squarely, of the distance.
+  [[nodiscard]] float cellAngle() const { return cell * 2.0F * halfHeight / static_cast<float>(height); }
 
   [[nodiscard]] glm::vec3 ray(float x, float y) const {
     const float scale = 2.0F * halfHeight / static_cast<float>(height);
@@ -43,6 +50,12 @@ Camera cameraOf(const World& world, const ViewSettings& view) {
   return camera;
 }
 
+GatherSettings shareOf(const GatherSettings& settings, std::size_t count) {
+  const float share = 1.0F / static_cast<float>(count);
+  return {{share * settings.direct.perFormFactor, share * settings.direct.least},
+          settings.rays / static_cast<std::uint32_t>(count)};
+}
+
 /// A visible point whose irradiance is known.
 template <int K>
 struct Cell {
@@ -61,6 +74,7 @@ class Picture {
         world_(light.world()),
         camera_(cameraOf(world_, view)),
         settings_(settings),
+        spotSettings_(shareOf(settings, spotsOfPixel)),
         columns_((camera_.width + cell - 1) / cell),
         rows_((camera_.height + cell - 1) / cell),
         cells_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
@@ -169,13 +183,13 @@ class Picture {
   [[nodiscard]] glm::vec3 shade(std::size_t pixel) const {
     const auto x = static_cast<float>(pixel % static_cast<std::size_t>(camera_.width));
     const auto y = static_cast<float>(pixel / static_cast<std::size_t>(camera_.width));
-    constexpr glm::vec2 spots[4] = {{0.375F, 0.125F}, {0.875F, 0.375F}, {0.125F, 0.625F}, {0.625F, 0.875F}};
     glm::dvec3 sum(0.0);
-    for (const glm::vec2& spot : spots) sum += 0.25 * luminanceAt(x + spot.x, y + spot.y);
-    return glm::vec3(sum);
+    for (std::size_t i = 0; i < spotsOfPixel; ++i)
+      sum += luminanceAt(x + spots[i].x, y + spots[i].y, mixKeys(0x71d, spotsOfPixel * pixel + i));
+    return glm::vec3(sum / static_cast<double>(spotsOfPixel));
   }
 
-  [[nodiscard]] glm::dvec3 luminanceAt(float x, float y) const {
+  [[nodiscard]] glm::dvec3 luminanceAt(float x, float y, std::uint64_t key) const {
     const glm::vec3 direction = camera_.ray(x, y);
     const auto hit = world_.rays.nearest(camera_.eye, direction, RayScene::Barrier::opaqueAndGlass);
     const std::int32_t domain = hit ? world_.building.sideDomain[hit.side()] : -1;
@@ -185,23 +199,29 @@ class Picture {
       return world_.layout.totalColour(luminanceAlong(light_, domain_, camera_.eye, direction, true));
     }
     const glm::vec3 point = camera_.eye + hit.distance_m * direction;
-    const std::optional<Columns<K>> irradiance =
-        irradianceAt(x, y, point, world_.normalOf(hit.side()), hit.distance_m);
-    Columns<K> exitance = light_.exitance(hit, point, true);
-    if (irradiance) {
-      exitance = world_.layout.template property<K>(world_.reflectanceOf(hit.piece)) * *irradiance +
-                 world_.layout.template light<K>(world_.layout.electricColumn(),
-                                                 world_.materialOf(hit.piece).exitance_lm_m2);
+    const glm::vec3 normal = world_.normalOf(hit.side());
+    std::optional<Columns<K>> irradiance = irradianceAt(x, y, point, normal, hit.distance_m);
+    if (!irradiance) {
+      const Gathered<K> arriving =
+          gather(light_, domain, point + rayOffset_m * normal, normal, spotSettings_, key);
+      irradiance = arriving.direct_lx + arriving.reflected_lx;
     }
+    const Columns<K> exitance =
+        world_.layout.template property<K>(world_.reflectanceOf(hit.piece)) * *irradiance +
+        world_.layout.template light<K>(world_.layout.electricColumn(),
+                                        world_.materialOf(hit.piece).exitance_lm_m2);
     return std::numbers::inv_pi * world_.layout.totalColour(exitance);
   }
 
-  /// Irradiance between the cells near a picture point that lie on the same surface, if there are any.
+  /// Irradiance between the cells near a picture point that lie on the same surface, if they lie about it. A
+  /// surface that is seen aslant and narrow, as a window's head, often has all of them before the point or
+  /// all behind it, where light may be another.
   [[nodiscard]] std::optional<Columns<K>> irradianceAt(float x, float y, const glm::vec3& point,
                                                        const glm::vec3& normal, float distance_m) const {
     const int column = static_cast<int>(x) / cell;
     const int row = static_cast<int>(y) / cell;
     Columns<K> sum;
+    glm::vec3 offset(0.0F);
     float weights = 0.0F;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
@@ -216,17 +236,19 @@ class Picture {
             std::max(1.5F - std::abs(y / cell - static_cast<float>(row + dy) - 0.5F), 0.01F);
         const float weight = tent * std::exp(-4.0F * (offPlane + 1.0F - glm::dot(other.normal, normal)));
         sum += weight * (other.direct_lx + other.reflected_lx);
+        offset += weight * (other.point - point);
         weights += weight;
       }
     }
     if (weights < 1e-4F) return std::nullopt;
+    if (glm::length(offset) > weights * distance_m * camera_.cellAngle()) return std::nullopt;
     return (1.0F / weights) * sum;
   }
 
   const SolvedLight<K>& light_;
   const World& world_;
   Camera camera_;
-  GatherSettings settings_;
+  GatherSettings settings_, spotSettings_;  // of a cell, of a spot of a pixel
   int columns_, rows_;
   std::vector<Cell<K>> cells_;
   std::int32_t domain_ = -1;
