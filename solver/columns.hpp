@@ -4,10 +4,23 @@
 
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
 #include <geometry/building.hpp>
+
+/// Every width that a study may be solved in, as instantiate(K); ends a file of templates over K.
+#define CLERESTORY_STUDY_WIDTHS(instantiate) instantiate(1) instantiate(2) instantiate(4) instantiate(8)
+
+/// The widths of what shootingHR needs. CLERESTORY_WIDE_COLUMNS, set for a benchmark alone, adds 16 and the
+/// 145 patches of a sky rounded up.
+#ifdef CLERESTORY_WIDE_COLUMNS
+#define CLERESTORY_TRANSPORT_WIDTHS(instantiate) \
+  CLERESTORY_STUDY_WIDTHS(instantiate) instantiate(16) instantiate(152)
+#else
+#define CLERESTORY_TRANSPORT_WIDTHS(instantiate) CLERESTORY_STUDY_WIDTHS(instantiate)
+#endif
 
 namespace clerestory {
 

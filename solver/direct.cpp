@@ -153,10 +153,6 @@ DirectLight<K> directFromEmitters(const SolvedLight<K>& light, std::int32_t doma
                                                const glm::vec3&, DirectSamples, std::uint64_t);          \
   template DirectLight<K> directFromEmitters<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&,   \
                                                 const glm::vec3&, DirectSamples, std::uint64_t);
-CLERESTORY_INSTANTIATE(1)
-CLERESTORY_INSTANTIATE(2)
-CLERESTORY_INSTANTIATE(4)
-CLERESTORY_INSTANTIATE(8)
-#undef CLERESTORY_INSTANTIATE
+CLERESTORY_TRANSPORT_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

@@ -61,13 +61,9 @@ SolvedDomain<K> gatheringHR(const SolvedLight<K>& light, std::int32_t domain, Hi
   return solved;
 }
 
-template SolvedDomain<1> gatheringHR(const SolvedLight<1>&, std::int32_t, Hierarchy,
-                                     const TransportSettings&);
-template SolvedDomain<2> gatheringHR(const SolvedLight<2>&, std::int32_t, Hierarchy,
-                                     const TransportSettings&);
-template SolvedDomain<4> gatheringHR(const SolvedLight<4>&, std::int32_t, Hierarchy,
-                                     const TransportSettings&);
-template SolvedDomain<8> gatheringHR(const SolvedLight<8>&, std::int32_t, Hierarchy,
-                                     const TransportSettings&);
+#define CLERESTORY_INSTANTIATE(K)                                                      \
+  template SolvedDomain<K> gatheringHR(const SolvedLight<K>&, std::int32_t, Hierarchy, \
+                                       const TransportSettings&);
+CLERESTORY_STUDY_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

@@ -563,9 +563,7 @@ Verdict Interactions<K>::receiveFromPortal(const Receiver& receiver, const Porta
   return Verdict::accept;
 }
 
-template class Interactions<1>;
-template class Interactions<2>;
-template class Interactions<4>;
-template class Interactions<8>;
+#define CLERESTORY_INSTANTIATE(K) template class Interactions<K>;
+CLERESTORY_TRANSPORT_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

@@ -202,10 +202,6 @@ std::array<Columns<K>, 6> clusterLightFromPortal(const SolvedLight<K>& light, co
                                                     const Receiver&, const PortalSight&, float);          \
   template std::array<Columns<K>, 6> clusterLightFromPortal<K>(                                           \
       const SolvedLight<K>&, const PortalSender<K>&, const Hierarchy&, NodeIndex, std::uint64_t&);
-CLERESTORY_INSTANTIATE(1)
-CLERESTORY_INSTANTIATE(2)
-CLERESTORY_INSTANTIATE(4)
-CLERESTORY_INSTANTIATE(8)
-#undef CLERESTORY_INSTANTIATE
+CLERESTORY_TRANSPORT_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

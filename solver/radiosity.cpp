@@ -60,9 +60,7 @@ Columns<K> SolvedLight<K>::behindPortal(const Portal& portal, const glm::vec3& r
                           outsideLuminance(onPane, direction));
 }
 
-template class SolvedLight<1>;
-template class SolvedLight<2>;
-template class SolvedLight<4>;
-template class SolvedLight<8>;
+#define CLERESTORY_INSTANTIATE(K) template class SolvedLight<K>;
+CLERESTORY_TRANSPORT_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

@@ -151,10 +151,6 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
   template Gathered<K> gather<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&, const glm::vec3&, \
                                  const GatherSettings&, std::uint64_t);                                   \
   template GridValues senseGrid<K>(const SolvedLight<K>&, const SensorGrid&, const GatherSettings&, double);
-CLERESTORY_INSTANTIATE(1)
-CLERESTORY_INSTANTIATE(2)
-CLERESTORY_INSTANTIATE(4)
-CLERESTORY_INSTANTIATE(8)
-#undef CLERESTORY_INSTANTIATE
+CLERESTORY_STUDY_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

@@ -87,13 +87,9 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
   return solved;
 }
 
-template SolvedDomain<1> shootingHR(const SolvedLight<1>&, std::int32_t, Hierarchy, const TransportSettings&,
-                                    LinkCache&);
-template SolvedDomain<2> shootingHR(const SolvedLight<2>&, std::int32_t, Hierarchy, const TransportSettings&,
-                                    LinkCache&);
-template SolvedDomain<4> shootingHR(const SolvedLight<4>&, std::int32_t, Hierarchy, const TransportSettings&,
-                                    LinkCache&);
-template SolvedDomain<8> shootingHR(const SolvedLight<8>&, std::int32_t, Hierarchy, const TransportSettings&,
-                                    LinkCache&);
+#define CLERESTORY_INSTANTIATE(K)                                                     \
+  template SolvedDomain<K> shootingHR(const SolvedLight<K>&, std::int32_t, Hierarchy, \
+                                      const TransportSettings&, LinkCache&);
+CLERESTORY_TRANSPORT_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

@@ -75,9 +75,7 @@ void SolvedDomain<K>::closeBalance(const World& world) {
   }
 }
 
-template struct SolvedDomain<1>;
-template struct SolvedDomain<2>;
-template struct SolvedDomain<4>;
-template struct SolvedDomain<8>;
+#define CLERESTORY_INSTANTIATE(K) template struct SolvedDomain<K>;
+CLERESTORY_TRANSPORT_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

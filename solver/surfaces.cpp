@@ -62,9 +62,8 @@ std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double so
   return result;
 }
 
-template std::vector<SurfaceValue> measureSurfaces<1>(const SolvedLight<1>&, double);
-template std::vector<SurfaceValue> measureSurfaces<2>(const SolvedLight<2>&, double);
-template std::vector<SurfaceValue> measureSurfaces<4>(const SolvedLight<4>&, double);
-template std::vector<SurfaceValue> measureSurfaces<8>(const SolvedLight<8>&, double);
+#define CLERESTORY_INSTANTIATE(K) \
+  template std::vector<SurfaceValue> measureSurfaces<K>(const SolvedLight<K>&, double);
+CLERESTORY_STUDY_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

@@ -396,9 +396,7 @@ void Transport<K>::handOverLinks(float fade) {
   cache_.replace(std::move(kept), tree_.size(), fade);
 }
 
-template class Transport<1>;
-template class Transport<2>;
-template class Transport<4>;
-template class Transport<8>;
+#define CLERESTORY_INSTANTIATE(K) template class Transport<K>;
+CLERESTORY_TRANSPORT_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

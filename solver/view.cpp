@@ -262,9 +262,8 @@ LuminanceImage renderView(const SolvedLight<K>& light, const ViewSettings& view,
   return Picture<K>(light, view, settings).render();
 }
 
-template LuminanceImage renderView<1>(const SolvedLight<1>&, const ViewSettings&, const GatherSettings&);
-template LuminanceImage renderView<2>(const SolvedLight<2>&, const ViewSettings&, const GatherSettings&);
-template LuminanceImage renderView<4>(const SolvedLight<4>&, const ViewSettings&, const GatherSettings&);
-template LuminanceImage renderView<8>(const SolvedLight<8>&, const ViewSettings&, const GatherSettings&);
+#define CLERESTORY_INSTANTIATE(K) \
+  template LuminanceImage renderView<K>(const SolvedLight<K>&, const ViewSettings&, const GatherSettings&);
+CLERESTORY_STUDY_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

@@ -168,13 +168,9 @@ RivalSolution<K> rivalRadiosity(const SolvedLight<K>& light, std::int32_t domain
   return result;
 }
 
-template RivalSolution<1> rivalRadiosity<1>(const SolvedLight<1>&, std::int32_t, Hierarchy,
-                                            const RivalSettings&);
-template RivalSolution<2> rivalRadiosity<2>(const SolvedLight<2>&, std::int32_t, Hierarchy,
-                                            const RivalSettings&);
-template RivalSolution<4> rivalRadiosity<4>(const SolvedLight<4>&, std::int32_t, Hierarchy,
-                                            const RivalSettings&);
-template RivalSolution<8> rivalRadiosity<8>(const SolvedLight<8>&, std::int32_t, Hierarchy,
-                                            const RivalSettings&);
+#define CLERESTORY_INSTANTIATE(K)                                                             \
+  template RivalSolution<K> rivalRadiosity<K>(const SolvedLight<K>&, std::int32_t, Hierarchy, \
+                                              const RivalSettings&);
+CLERESTORY_STUDY_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory
