@@ -105,13 +105,14 @@ std::vector<RayEnd> traceRays(const World& world, const Hierarchy& tree, const s
 template <int K>
 void iterate(const World& world, Radiosity<K>& radiosity, const std::vector<NodeIndex>& leaves,
              const std::vector<Columns<K>>& direct_lx, const std::vector<RayEnd>& ends,
-             const RivalSettings& settings) {
+             const RivalSettings& settings, const AfterIteration<K>& afterIteration) {
   constexpr int iterationsMax = 2000;
   const Hierarchy& tree = radiosity.tree;
   radiosity.irradiance_lx = direct_lx;
   std::vector<Columns<K>> reflected_lm_m2(tree.size());
   const float share = 1.0F / static_cast<float>(settings.raysPerElement);
   for (int iteration = 0; iteration < iterationsMax; ++iteration) {
+    if (afterIteration) afterIteration(iteration, radiosity);
     double before = 0.0;
     for (const NodeIndex leaf : leaves) {
       reflected_lm_m2[leaf] = radiosity.reflected(leaf);
@@ -137,7 +138,7 @@ void iterate(const World& world, Radiosity<K>& radiosity, const std::vector<Node
 
 template <int K>
 RivalSolution<K> rivalRadiosity(const SolvedLight<K>& light, std::int32_t domain, Hierarchy tree,
-                                const RivalSettings& settings) {
+                                const RivalSettings& settings, const AfterIteration<K>& after) {
   using Clock = std::chrono::steady_clock;
   const World& world = light.world();
   RivalSolution<K> result{unlit<K>(world, std::move(tree))};
@@ -153,7 +154,7 @@ RivalSolution<K> rivalRadiosity(const SolvedLight<K>& light, std::int32_t domain
   result.directSeconds = std::chrono::duration<double>(Clock::now() - start).count();
 
   const std::vector<RayEnd> ends = traceRays(world, radiosity.tree, leaves, settings.raysPerElement);
-  iterate(world, radiosity, leaves, direct_lx, ends, settings);
+  iterate(world, radiosity, leaves, direct_lx, ends, settings, after);
 
   result.elements = leaves.size();
   result.rays += ends.size();
@@ -165,12 +166,12 @@ RivalSolution<K> rivalRadiosity(const SolvedLight<K>& light, std::int32_t domain
 }
 
 template RivalSolution<1> rivalRadiosity<1>(const SolvedLight<1>&, std::int32_t, Hierarchy,
-                                            const RivalSettings&);
+                                            const RivalSettings&, const AfterIteration<1>&);
 template RivalSolution<2> rivalRadiosity<2>(const SolvedLight<2>&, std::int32_t, Hierarchy,
-                                            const RivalSettings&);
+                                            const RivalSettings&, const AfterIteration<2>&);
 template RivalSolution<4> rivalRadiosity<4>(const SolvedLight<4>&, std::int32_t, Hierarchy,
-                                            const RivalSettings&);
+                                            const RivalSettings&, const AfterIteration<4>&);
 template RivalSolution<8> rivalRadiosity<8>(const SolvedLight<8>&, std::int32_t, Hierarchy,
-                                            const RivalSettings&);
+                                            const RivalSettings&, const AfterIteration<8>&);
 
 }  // namespace clerestory
