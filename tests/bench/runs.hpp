@@ -31,15 +31,18 @@ struct LitRoom {
       throw std::runtime_error(std::to_string(stage.domains.size()) + " lit rooms instead of one");
   }
   LitRoom(const std::filesystem::path& model, Light light, std::size_t places)
-      : LitRoom(readModel(model, {}), studyOfModel(model), light, places) {}
+      : LitRoom(readModel(model, {}), withoutGrids(studyOfModel(model)), light, places) {}
   LitRoom(const LitRoom&) = delete;
 
   [[nodiscard]] std::int32_t domain() const { return stage.domains[0]; }
   [[nodiscard]] const Hierarchy& tree() const { return stage.trees[0]; }
 
  private:
-  static Study litBy(Light light, Study study) {
+  static Study withoutGrids(Study study) {
     study.grids.clear();
+    return study;
+  }
+  static Study litBy(Light light, Study study) {
     if (light == Light::panels) study.sky.diffuseHorizontal_lx = 0.0;
     return study;
   }
