@@ -82,17 +82,10 @@ Received<K> lightOfWeak(const World& world, const Hierarchy& tree, const Unshot<
   return (1.0F / static_cast<float>(rays)) * sum;
 }
 
-template Received<1> lightOfWeak(const World&, const Hierarchy&, const Unshot<1>&,
-                                 std::span<const std::uint32_t>, const Receiver&, std::vector<NodeIndex>&,
-                                 std::uint32_t);
-template Received<2> lightOfWeak(const World&, const Hierarchy&, const Unshot<2>&,
-                                 std::span<const std::uint32_t>, const Receiver&, std::vector<NodeIndex>&,
-                                 std::uint32_t);
-template Received<4> lightOfWeak(const World&, const Hierarchy&, const Unshot<4>&,
-                                 std::span<const std::uint32_t>, const Receiver&, std::vector<NodeIndex>&,
-                                 std::uint32_t);
-template Received<8> lightOfWeak(const World&, const Hierarchy&, const Unshot<8>&,
-                                 std::span<const std::uint32_t>, const Receiver&, std::vector<NodeIndex>&,
-                                 std::uint32_t);
+#define CLERESTORY_INSTANTIATE(K)                                                       \
+  template Received<K> lightOfWeak<K>(const World&, const Hierarchy&, const Unshot<K>&, \
+                                      std::span<const std::uint32_t>, const Receiver&,  \
+                                      std::vector<NodeIndex>&, std::uint32_t);
+CLERESTORY_TRANSPORT_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

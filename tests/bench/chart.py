@@ -111,6 +111,15 @@ def read_points(arguments):
     return series
 
 
+def fitted_power(points):
+    """The slope of the straight line in logarithms that is nearest to all points."""
+    across = [math.log(x) for x, _ in points]
+    up = [math.log(y) for _, y in points]
+    middle = sum(across) / len(across), sum(up) / len(up)
+    spread = sum((x - middle[0]) ** 2 for x in across)
+    return sum((x - middle[0]) * (y - middle[1]) for x, y in zip(across, up)) / spread
+
+
 def front_of(points):
     """What no other point is left of and below."""
     front = []
@@ -224,8 +233,12 @@ def main():
     parser.add_argument("--linear", default="", choices=["", "x", "y", "xy"], help="axes that are not logarithmic")
     parser.add_argument("--front", action="store_true", help="the line runs over what no other point beats in both")
     parser.add_argument("--slope", type=float, help="a reference line: the power of y over x on logarithmic axes")
+    parser.add_argument("--fit", action="store_true", help="the legend tells each series' own power of y over x")
     arguments = parser.parse_args()
-    drawing = "\n".join(draw(read_points(arguments), arguments)) + "\n"
+    series = read_points(arguments)
+    if arguments.fit:
+        series = {f"{name}: slope {fitted_power(points):.2f}": points for name, points in series.items()}
+    drawing = "\n".join(draw(series, arguments)) + "\n"
     with open(arguments.output, "w", encoding="utf-8") as file:
         file.write(drawing)
 

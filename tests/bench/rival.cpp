@@ -105,12 +105,13 @@ std::vector<RayEnd> traceRays(const World& world, const Hierarchy& tree, const s
 template <int K>
 void iterate(const World& world, Radiosity<K>& radiosity, const std::vector<NodeIndex>& leaves,
              const std::vector<Columns<K>>& direct_lx, const std::vector<RayEnd>& ends,
-             const RivalSettings& settings) {
+             const RivalSettings& settings, const AfterIteration<K>& afterIteration) {
   constexpr int iterationsMax = 2000;
   const Hierarchy& tree = radiosity.tree;
   radiosity.irradiance_lx = direct_lx;
   std::vector<Columns<K>> reflected_lm_m2(tree.size());
   for (int iteration = 0; iteration < iterationsMax; ++iteration) {
+    if (afterIteration) afterIteration(iteration, radiosity);
     double before = 0.0;
     for (const NodeIndex leaf : leaves) {
       reflected_lm_m2[leaf] = radiosity.reflected(leaf);
@@ -141,7 +142,7 @@ void iterate(const World& world, Radiosity<K>& radiosity, const std::vector<Node
 
 template <int K>
 RivalSolution<K> rivalRadiosity(const SolvedLight<K>& light, std::int32_t domain, Hierarchy tree,
-                                const RivalSettings& settings) {
+                                const RivalSettings& settings, const AfterIteration<K>& after) {
   using Clock = std::chrono::steady_clock;
   const World& world = light.world();
   RivalSolution<K> result{unlit<K>(world, std::move(tree))};
@@ -157,7 +158,7 @@ RivalSolution<K> rivalRadiosity(const SolvedLight<K>& light, std::int32_t domain
   result.directSeconds = std::chrono::duration<double>(Clock::now() - start).count();
 
   const std::vector<RayEnd> ends = traceRays(world, radiosity.tree, leaves, settings.raysPerElement);
-  iterate(world, radiosity, leaves, direct_lx, ends, settings);
+  iterate(world, radiosity, leaves, direct_lx, ends, settings, after);
 
   result.elements = leaves.size();
   result.rays += ends.size();
@@ -170,7 +171,7 @@ RivalSolution<K> rivalRadiosity(const SolvedLight<K>& light, std::int32_t domain
 
 #define CLERESTORY_INSTANTIATE(K)                                                             \
   template RivalSolution<K> rivalRadiosity<K>(const SolvedLight<K>&, std::int32_t, Hierarchy, \
-                                              const RivalSettings&);
+                                              const RivalSettings&, const AfterIteration<K>&);
 CLERESTORY_STUDY_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

@@ -2,6 +2,8 @@
 // The plain rival of the solver: radiosity over uniform elements, cosine rays traced once, Jacobi iterations.
 #pragma once
 
+#include <functional>
+
 #include "direct.hpp"
 #include "radiosity.hpp"
 
@@ -26,11 +28,15 @@ struct RivalSolution {
   double leakedShare = 0.0;  ///< of the cosine rays: those that met nothing of the domain
 };
 
+/// Told of the light after each Jacobi iteration; 0: the direct light alone.
+template <int K>
+using AfterIteration = std::function<void(int iteration, const Radiosity<K>& radiosity)>;
+
 /// Solves a closed domain. It shares with the solver what lies around the transport: the tree and its
 /// division, the light from portals and emitters at a point (direct.hpp), glass as a diffuse reflector.
 /// Random numbers come from the tree's keys.
 template <int K>
 RivalSolution<K> rivalRadiosity(const SolvedLight<K>& light, std::int32_t domain, Hierarchy tree,
-                                const RivalSettings& settings);
+                                const RivalSettings& settings, const AfterIteration<K>& after = {});
 
 }  // namespace clerestory

@@ -3,12 +3,11 @@
 // of both, as CSV, and the least time of each to 5, 2 and 1 %.
 #include <CLI/CLI.hpp>
 
-#include <chrono>
-#include <ctime>
 #include <map>
 
 #include "front.hpp"
 #include "truth.hpp"
+#include "watch.hpp"
 
 namespace clerestory {
 namespace {
@@ -25,22 +24,6 @@ struct Options {
   double truthSize_m = 0.1;
   std::uint32_t truthRays = 1024;
   int truthRuns = 2;
-};
-
-struct Seconds {
-  double cpu = 0.0, wall = 0.0;
-};
-
-class Watch {
- public:
-  [[nodiscard]] Seconds elapsed() const {
-    return {static_cast<double>(std::clock() - cpu_) / CLOCKS_PER_SEC,
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count()};
-  }
-
- private:
-  std::clock_t cpu_ = std::clock();
-  std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
 };
 
 /// One setting of one method: means over its seeds, the errors' RMS.

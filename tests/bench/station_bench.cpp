@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The paper's section 5.4 on a large hall (make_station.py): time and memory of a given number of
+// interactions with its oracle and a cache of 1,000,000 links; and the time to an error with the program's
+// own settings.
+#include <CLI/CLI.hpp>
+
+#include <fstream>
+#include <iostream>
+
+#include <geometry/parallel.hpp>
+
+#include "runs.hpp"
+#include "truth.hpp"
+
+namespace clerestory {
+namespace {
+
+constexpr std::size_t paperCache = 1'000'000;
+
+/// Memory of this process from Linux's own account; 0 elsewhere. [MiB]
+class Memory {
+ public:
+  /// The peak is that since now.
+  static void forgetPeak() { std::ofstream("/proc/self/clear_refs") << 5; }
+  static double now_MiB() { return read_MiB("VmRSS:"); }
+  static double peak_MiB() { return read_MiB("VmHWM:"); }
+
+ private:
+  static double read_MiB(const std::string& key) {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+      if (line.starts_with(key)) return std::stod(line.substr(key.size())) / 1024.0;
+    }
+    return 0.0;
+  }
+};
+
+struct Table {
+  std::ofstream file;
+
+  explicit Table(const std::filesystem::path& folder) : file(folder / "station.csv") {
+    file << "oracle,setting,cpu_seconds,wall_seconds,before_mib,peak_mib,links_required,links_reused,"
+            "visibility_tests,elements,iterations,surfaces_pct,elements_pct,surfaces_true_pct\n";
+  }
+  void add(const char* oracle, const std::string& setting, const Run& run, double before_MiB, double peak_MiB,
+           const std::string& errors) {
+    const IterationStatistics sum = run.total();
+    file << oracle << ',' << setting << ',' << run.seconds.cpu << ',' << run.seconds.wall << ',' << before_MiB
+         << ',' << peak_MiB << ',' << sum.linksRequired << ',' << sum.linksReused << ','
+         << sum.visibilityTests << ',' << sum.elements << ',' << run.solved.statistics.size() << ',' << errors
+         << std::endl;
+  }
+};
+
+/// A run, with the memory that the process held before it and at most during it.
+Run runInMemory(const LitRoom& room, const TransportSettings& settings, double& before_MiB,
+                double& peak_MiB) {
+  Memory::forgetPeak();
+  before_MiB = Memory::now_MiB();
+  Run run = shoot(room, settings, paperCache);
+  peak_MiB = Memory::peak_MiB();
+  return run;
+}
+
+void measurePaper(const LitRoom& room, TransportSettings settings, double interactions, Table& table) {
+  settings.epsilon = epsilonFor(room, settings, interactions, 0.05);
+  double before_MiB = 0.0;
+  double peak_MiB = 0.0;
+  const Run run = runInMemory(room, settings, before_MiB, peak_MiB);
+  std::ostringstream setting;
+  setting << settings.epsilon;
+  table.add("transported power", setting.str(), run, before_MiB, peak_MiB, ",,");
+}
+
+/// RMS over the finer run's leaves of the difference of radiosity, as a share of the radiosity's RMS.
+double elementsError(const SolvedDomain<1>& coarse, const SolvedDomain<1>& fine) {
+  const Hierarchy& tree = fine.radiosity.tree;
+  double errors = 0.0;
+  double squares = 0.0;
+  for (NodeIndex node = 0; node < tree.size(); ++node) {
+    if (!tree.isLeaf(node)) continue;
+    const Hierarchy& own = coarse.radiosity.tree;
+    const NodeIndex leaf = own.leafAt(own.sides[tree.treeSide[node]].root, tree.centre[node]);
+    const auto truth = static_cast<double>(fine.radiosity.reflected(node)[0]);
+    const double error = static_cast<double>(coarse.radiosity.reflected(leaf)[0]) - truth;
+    errors += static_cast<double>(tree.area_m2[node]) * error * error;
+    squares += static_cast<double>(tree.area_m2[node]) * truth * truth;
+  }
+  return std::sqrt(errors / squares);
+}
+
+/// Means of surfaces by the plain rival, which has no links. Made once and kept.
+Measured surfacesTruth(const LitRoom& room, const std::filesystem::path& folder) {
+  TruthSettings settings;
+  settings.rival = {0.6F, 256, 2, {15.0F, 0.5F}, 1e-4};
+  settings.runs = 1;
+  return makeTruth(room.stage, "station", folder, settings).mean;
+}
+
+/// The program's own settings, finer and finer, each against one four times finer, until surfaces agree. And
+/// beside it what the rival says of them.
+void measureAccuracy(const LitRoom& room, double asked, const std::filesystem::path& folder, Table& table) {
+  const Measured truth = surfacesTruth(room, folder);
+  for (const double accuracy : {0.4, 0.2, 0.1, 0.05, 0.025, 0.018, 0.014, 0.01}) {
+    double before_MiB = 0.0;
+    double peak_MiB = 0.0;
+    const Run run = runInMemory(room, transportFor(accuracy), before_MiB, peak_MiB);
+    const Run fine = shoot(room, transportFor(accuracy / 4.0), paperCache);
+    const double error =
+        errorsOf(measure(room.stage, {run.solved.radiosity}), measure(room.stage, {fine.solved.radiosity}))
+            .surfaces;
+    std::ostringstream setting;
+    setting << 100.0 * accuracy << " %";
+    std::ostringstream errors;
+    errors << 100.0 * error << ',' << 100.0 * elementsError(run.solved, fine.solved);
+    table.add("error", setting.str(), run, before_MiB, peak_MiB, errors.str());
+    if (error <= asked) return;
+  }
+}
+
+}  // namespace
+}  // namespace clerestory
+
+int main(int argc, char** argv) {
+  using namespace clerestory;
+  std::filesystem::path model;
+  std::filesystem::path folder = ".";
+  double interactions = 35e6;
+  double asked = 0.05;
+  TransportSettings settings;
+  settings.oracle = Oracle::transportedPower;
+  settings.epsilon = 2e-6F;
+  settings.elementMin_m = 0.3F;
+  settings.endShare = 1e-3;
+  int threads = 2;
+  bool paperAlone = false;
+  CLI::App app("time and memory of a large scene");
+  app.add_option("model", model, "station.obj of make_station.py")->required();
+  app.add_option("--folder", folder, "where station.csv is written and the truth is kept");
+  app.add_option("--interactions", interactions, "the threshold is chosen so that it takes about as many");
+  app.add_option("--epsilon", settings.epsilon, "where the search for it starts");
+  app.add_option("--element", settings.elementMin_m, "elements of a smaller radius are not divided [m]");
+  app.add_option("--error", asked, "of surfaces of more than 0.1 m², area-weighted RMS");
+  app.add_option("--threads", threads, "0: all");
+  app.add_flag("--paper-alone", paperAlone, "not the time to an error");
+  CLI11_PARSE(app, argc, argv);
+
+  Table table(folder);
+  withThreads(threads, [&] {
+    const LitRoom room(model, LitRoom::Light::panels, 0);
+    std::cout << room.building.model.pieces.size() << " polygons after cleaning, " << room.tree().sides.size()
+              << " of them in the hall\n";
+    measurePaper(room, settings, interactions, table);
+    if (!paperAlone) measureAccuracy(room, asked, folder, table);
+  });
+  return table.file ? 0 : 1;
+}
