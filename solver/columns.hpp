@@ -29,9 +29,8 @@ template <int K>
 struct Columns {
   std::array<float, K> value{};
 
-  // The mask says nothing new (a column is below K), but lets the compiler see it.
-  float& operator[](int column) { return value[static_cast<std::size_t>(column & (K - 1))]; }
-  float operator[](int column) const { return value[static_cast<std::size_t>(column & (K - 1))]; }
+  float& operator[](int column) { return value[static_cast<std::size_t>(column)]; }
+  float operator[](int column) const { return value[static_cast<std::size_t>(column)]; }
   Columns& operator+=(const Columns& other) {
     for (int c = 0; c < K; ++c) (*this)[c] += other[c];
     return *this;
@@ -89,7 +88,7 @@ struct ColumnLayout {
     if constexpr (K >= 4) {  // fewer columns are grey always
       if (!grey) return {columns[first], columns[first + 1], columns[first + 2]};
     }
-    return glm::dvec3(static_cast<double>(columns[first]));
+    return glm::dvec3(static_cast<double>(columns[greyColumn<K>(first)]));
   }
   template <int K>
   [[nodiscard]] glm::dvec3 totalColour(const Columns<K>& columns) const {
@@ -111,7 +110,12 @@ struct ColumnLayout {
         return;
       }
     }
-    columns[first] = static_cast<float>(luminanceOf(colour));
+    columns[greyColumn<K>(first)] = static_cast<float>(luminanceOf(colour));
+  }
+  // Says nothing new (a first column is below K), but lets the compiler see it.
+  template <int K>
+  static int greyColumn(int first) {
+    return std::min(first, K - 1);
   }
 };
 

@@ -403,7 +403,7 @@ float Interactions<K>::heldSquare(NodeIndex sender, float distance_m, float rece
 // those that the receiver sees best. Left out, that errs the same way for all receivers, so it is sampled: a
 // few pairs of spots give the covariance of radiosity and kernel, too noisy for one link but right over many.
 template <int K>
-Columns<K> Interactions<K>::unevenLight(const Receiver& receiver, NodeIndex sender) const {
+Columns<K> Interactions<K>::unevenLight(const Receiver& receiver, NodeIndex sender, float formFactor) const {
   constexpr std::uint32_t count = 4;
   const std::uint64_t turn = mixKeys(tree_.key[sender], receiver.key);
   const float nearest_m = 0.25F * std::min(receiver.radius_m, tree_.radius_m[sender]);
@@ -424,7 +424,11 @@ Columns<K> Interactions<K>::unevenLight(const Receiver& receiver, NodeIndex send
     kernel += own;
   }
   const float scale = tree_.area_m2[sender] * std::numbers::inv_pi_v<float> / static_cast<float>(count - 1);
-  return scale * (weighted - (kernel / static_cast<float>(count)) * radiosity);
+  Columns<K> beyond = scale * (weighted - (kernel / static_cast<float>(count)) * radiosity);
+  // Held alike on both sides, so that no light falls below zero and the mean stays.
+  const Columns<K> most = formFactor * unshot_.radiosity_lm_m2[sender];
+  for (int c = 0; c < K; ++c) beyond[c] = std::clamp(beyond[c], -most[c], most[c]);
+  return beyond;
 }
 
 template <int K>
@@ -434,7 +438,7 @@ void Interactions<K>::addToElement(Received<K>& next, const Receiver& receiver, 
   if (!tree_.isCluster(sender)) {
     next += (link.formFactor * link.visible()) * even;
     if (unshot_.highest[sender] > unshot_.lowest[sender])
-      next.irradiance_lx += link.visible() * unevenLight(receiver, sender);
+      next.irradiance_lx += link.visible() * unevenLight(receiver, sender, link.formFactor);
     return;
   }
   const glm::vec3 way = tree_.centre[sender] - receiver.centre;

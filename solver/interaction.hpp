@@ -194,7 +194,7 @@ class Interactions {
   [[nodiscard]] float raysNeeded(float variance_lm2) const;
 
   void addToElement(Received<K>& next, const Receiver& receiver, NodeIndex sender, const Link& link) const;
-  [[nodiscard]] Columns<K> unevenLight(const Receiver& receiver, NodeIndex sender) const;
+  [[nodiscard]] Columns<K> unevenLight(const Receiver& receiver, NodeIndex sender, float formFactor) const;
   void addToCluster(SixReceived<K>& next, const Receiver& receiver, NodeIndex sender, const Link& link) const;
   [[nodiscard]] float heldSquare(NodeIndex sender, float distance_m, float receiverRadius_m) const;
   [[nodiscard]] Received<K> sentAlong(NodeIndex cluster, const glm::vec3& direction) const;

@@ -118,7 +118,8 @@ class Reconstruction {
     for (std::size_t i = 0; i < polygon.size(); ++i) {
       const float rise = glm::dot(slope, polygon[i] - tree_.centre[node]);
       const float asFar = beside.endsAtCorner(i, polygon.size()) ? std::max(up, down) : 0.0F;
-      const float most = rise > 0.0F ? std::max(up, asFar) : std::min(std::max(down, asFar), own);
+      const float most =
+          rise > 0.0F ? std::max(up, asFar) : std::max(std::min(std::max(down, asFar), own), 0.0F);
       if (std::abs(rise) > most) factor = std::min(factor, most / std::abs(rise));
     }
     slope *= factor;

@@ -65,13 +65,15 @@ Received<K> lightOfWeak(const World& world, const Hierarchy& tree, const Unshot<
   const auto isBefore = [&](NodeIndex a, NodeIndex b) { return firstPlace(tree, a) < firstPlace(tree, b); };
   if (!std::is_sorted(senders.begin(), senders.end(), isBefore))
     std::sort(senders.begin(), senders.end(), isBefore);
-  const Sequence where(mixKeys(receiver.key, 0x3ea4));
-  const Sequence way(mixKeys(receiver.key, 0x3ea5));
+  const Sequence sequence(mixKeys(receiver.key, 0x3ea4));
   Received<K> sum;
   for (std::uint32_t i = 0; i < rays; ++i) {
-    const Start start = startOn(tree, receiver, where(i, 2), where(i, 0), where(i, 1));
+    // Point and way in four dimensions of one sequence: in the same two of two sequences they would go
+    // together.
+    const auto pick = static_cast<float>(mixKeys(receiver.key, i) >> 40U) * 0x1p-24F;
+    const Start start = startOn(tree, receiver, pick, sequence(i, 0), sequence(i, 1));
     const glm::vec3 from = start.point + rayOffset_m * start.normal;
-    const glm::vec3 direction = cosineDirection(start.normal, way(i, 0), way(i, 1));
+    const glm::vec3 direction = cosineDirection(start.normal, sequence(i, 2), sequence(i, 3));
     const auto hit = world.rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
     if (!hit || treeSideOf[hit.side()] == noNode) continue;
     const glm::vec3 to = from + hit.distance_m * direction;
