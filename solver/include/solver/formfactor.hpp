@@ -36,12 +36,12 @@ double polygonToPolygon(std::span<const glm::dvec3> receiver, std::span<const gl
 /// Polygons of more corners are left to other forms: the cost grows with the product of both.
 inline constexpr std::size_t contourCornersMost = 16;
 
-/// Unoccluded form factor from a convex polygon to another, the mean over the receiver, for hot loops and near
-/// polygons: they may touch or cut each other's planes. [0..1]
-/// `contourCornersMost` corners at most, in either winding; only what lies in front of the other, where its unit
-/// normal looks, counts. Integral around both outlines with four points an edge. Relative error: below
-/// 0.1 % where they share an edge, 0.4 % where a small one lies on a large one's edge; absolute: rounding to
-/// 1e-9 of the squared distance over the area, so far and tiny ones have better forms.
+/// Unoccluded form factor from a convex polygon to another, the mean over the receiver, for hot loops and
+/// near polygons: they may touch or cut each other's planes. [0..1] `contourCornersMost` corners at most, in
+/// either winding; only what lies in front of the other, where its unit normal looks, counts. Integral around
+/// both outlines with four points an edge. Relative error: below 0.1 % where they share an edge, 0.4 % where
+/// a small one lies on a large one's edge; absolute: rounding to 1e-9 of the squared distance over the area,
+/// so far and tiny ones have better forms.
 float meanFormFactor(std::span<const glm::vec3> receiver, const glm::vec3& receiverNormal, float area_m2,
                      std::span<const glm::vec3> sender, const glm::vec3& senderNormal);
 
