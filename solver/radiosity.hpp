@@ -65,6 +65,8 @@ class SolvedLight {
     return entry ? &*entry : nullptr;
   }
 
+  /// Whether the side that a ray has met belongs to a solved domain.
+  [[nodiscard]] bool isSolved(const RayScene::Hit& hit) const { return rootOfSide_[hit.side()] != noNode; }
   /// Exitance of the side that a ray has met, with or without the surface's own emission; black where
   /// unsolved.
   [[nodiscard]] Columns<K> exitance(const RayScene::Hit& hit, const glm::vec3& point,

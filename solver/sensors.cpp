@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 #include <geometry/parallel.hpp>
 #include <geometry/sampling.hpp>
@@ -18,11 +19,25 @@ namespace {
 constexpr int mirrorDepth = 4;  // panes that a ray is followed by reflection
 constexpr std::uint32_t batches = 16;
 
+/// Standard deviation of the mean of what batches sum up, of `counts` values each.
+float deviationOfMean(const std::array<float, batches>& sums, const std::array<float, batches>& counts) {
+  std::array<float, batches> means{};
+  float mean = 0.0F;
+  for (std::size_t i = 0; i < batches; ++i) {
+    means[i] = sums[i] / std::max(counts[i], 1.0F);
+    mean += means[i] / static_cast<float>(batches);
+  }
+  float variance = 0.0F;
+  for (const float own : means) variance += (own - mean) * (own - mean);
+  return std::sqrt(variance / static_cast<float>(batches * (batches - 1)));
+}
+
 }  // namespace
 
 template <int K>
-Columns<K> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& fromIn,
-                          const glm::vec3& directionIn, bool withDirect) {
+std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain,
+                                         const glm::vec3& fromIn, const glm::vec3& directionIn,
+                                         bool withDirect) {
   const World& world = light.world();
   Columns<K> sum;
   float weight = 1.0F;
@@ -31,14 +46,15 @@ Columns<K> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain, cons
   for (int depth = 0; depth < mirrorDepth; ++depth) {
     const auto hit = world.rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
     if (!hit) {
-      // Only an open domain sees the sky without glass; in a closed one this is a leak and stays dark.
-      if (!world.building.domains[static_cast<std::size_t>(domain)].open) return sum;
+      // Only an open domain sees the sky without glass; in a closed one this is a leak.
+      if (!world.building.domains[static_cast<std::size_t>(domain)].open) return std::nullopt;
       return sum +
              weight * world.innerTransmittance(from, from + 1e4F * direction) * light.skyLuminance(direction);
     }
     const glm::vec3 point = from + hit.distance_m * direction;
     weight *= world.innerTransmittance(from, point);
     if (!world.materialOf(hit.piece).glazing) {
+      if (!light.isSolved(hit)) return std::nullopt;
       return sum + weight * std::numbers::inv_pi_v<float> * light.exitance(hit, point, withDirect);
     }
     const Glass& glass = world.glassOf(hit.piece);
@@ -69,23 +85,27 @@ Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::
 
   const bool isOpen = world.building.domains[static_cast<std::size_t>(domain)].open;
   const Sequence sequence(mixKeys(key, 3));
+  // Rays that end on no air's side (a crack between two books) are left out, as shooting leaves them out.
+  Columns<K> sky_cd_m2, reflected_cd_m2;
   std::array<float, batches> strengths{};
-  const float scale = std::numbers::pi_v<float> / static_cast<float>(settings.rays);
+  std::array<float, batches> counts{};
   for (std::uint32_t i = 0; i < settings.rays; ++i) {
     const glm::vec3 direction = cosineDirection(normal, sequence(i, 0), sequence(i, 1));
     const bool meetsSky = isOpen && !world.rays.nearest(point, direction, RayScene::Barrier::opaqueAndGlass);
-    const Columns<K> seen = scale * luminanceAlong(light, domain, point, direction, false);
-    (meetsSky ? result.direct_lx : result.reflected_lx) += seen;
-    strengths[i % batches] += static_cast<float>(batches) * world.layout.strength(seen);
+    const auto seen = luminanceAlong(light, domain, point, direction, false);
+    if (!seen) continue;
+    (meetsSky ? sky_cd_m2 : reflected_cd_m2) += *seen;
+    strengths[i % batches] += world.layout.strength(*seen);
+    counts[i % batches] += 1.0F;
   }
-  float mean = 0.0F;
-  for (const float strength : strengths) mean += strength / static_cast<float>(batches);
-  float variance = 0.0F;
-  for (const float strength : strengths) {
-    variance += (strength - mean) * (strength - mean) / static_cast<float>(batches * (batches - 1));
+  const float count = std::accumulate(counts.begin(), counts.end(), 0.0F);
+  if (count > 0.0F) {
+    const float scale = std::numbers::pi_v<float> / count;
+    result.direct_lx += scale * sky_cd_m2;
+    result.reflected_lx = scale * reflected_cd_m2;
+    result.reflectedDeviation_lx = std::numbers::pi_v<float> * deviationOfMean(strengths, counts);
   }
   result.directDeviation_lx = std::hypot(fromPortals.deviation_lx, fromEmitters.deviation_lx);
-  result.reflectedDeviation_lx = std::sqrt(variance);
   return result;
 }
 
@@ -146,8 +166,8 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
 }
 
 #define CLERESTORY_INSTANTIATE(K)                                                                         \
-  template Columns<K> luminanceAlong<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&,            \
-                                        const glm::vec3&, bool);                                          \
+  template std::optional<Columns<K>> luminanceAlong<K>(const SolvedLight<K>&, std::int32_t,               \
+                                                       const glm::vec3&, const glm::vec3&, bool);         \
   template Gathered<K> gather<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&, const glm::vec3&, \
                                  const GatherSettings&, std::uint64_t);                                   \
   template GridValues senseGrid<K>(const SolvedLight<K>&, const SensorGrid&, const GatherSettings&, double);

@@ -2,6 +2,8 @@
 // Final gather: what arrives at a point, from portals and emitters directly and from everything else by rays.
 #pragma once
 
+#include <optional>
+
 #include <solver/solution.hpp>
 
 #include "direct.hpp"
@@ -28,10 +30,11 @@ Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::
                    const glm::vec3& normal, const GatherSettings& settings, std::uint64_t key);
 
 /// Luminance along a ray in the air of a domain, glass seen through and mirrored in. [cd/m²]
-/// withDirect: surfaces' own emission and what is seen through portals belong to it.
+/// withDirect: surfaces' own emission and what is seen through portals belong to it. Nothing where the ray
+/// ends on a side that faces no solved air: in a crack.
 template <int K>
-Columns<K> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& from,
-                          const glm::vec3& direction, bool withDirect);
+std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain,
+                                         const glm::vec3& from, const glm::vec3& direction, bool withDirect);
 
 /// Values of a grid's sensors.
 template <int K>

@@ -196,7 +196,8 @@ class Picture {
     const bool isSolved = domain >= 0 && light_.of(domain) != nullptr;
     if (!hit || world_.materialOf(hit.piece).glazing || !isSolved) {
       if (domain_ < 0) return glm::dvec3(0.0);
-      return world_.layout.totalColour(luminanceAlong(light_, domain_, camera_.eye, direction, true));
+      return world_.layout.totalColour(
+          luminanceAlong(light_, domain_, camera_.eye, direction, true).value_or(Columns<K>{}));
     }
     const glm::vec3 point = camera_.eye + hit.distance_m * direction;
     const glm::vec3 normal = world_.normalOf(hit.side());
