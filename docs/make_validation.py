@@ -29,10 +29,14 @@ class Scene:
 
 OVERCAST = '[sky]\ntype = "cie-overcast"\ndiffuse_horizontal_lx = 10000\n[ground]\nreflectance = 0.2\n'
 SCENES = [
+    Scene("empty office", "refoffice/refoffice.obj", "refoffice_overcast_paths.csv",
+          OVERCAST + '[materials."glazing*"]\ntransmittance = 0.65\n', "paths, 0.4 %"),
     Scene("empty office", "refoffice/refoffice.obj", "refoffice_overcast.csv",
-          OVERCAST + '[materials."glazing*"]\ntransmittance = 0.65\n', "0.28 %"),
+          OVERCAST + '[materials."glazing*"]\ntransmittance = 0.65\n', "Radiance, 0.28 %"),
+    Scene("furnished office", "furnished/furnished.obj", "furnished_overcast_paths.csv",
+          OVERCAST + '[materials."glazing*"]\ntransmittance = 0.65\n', "paths, 0.6 %"),
     Scene("furnished office", "furnished/furnished.obj", "furnished_overcast.csv",
-          OVERCAST + '[materials."glazing*"]\ntransmittance = 0.65\n', "0.4 %"),
+          OVERCAST + '[materials."glazing*"]\ntransmittance = 0.65\n', "Radiance, 0.4 %"),
     Scene("floor of twelve offices", "floor/floor.obj", "floor_overcast.csv",
           OVERCAST + '[materials."glazing*"]\ntransmittance = 0.65\n', "1.7 %", left_out="corridor"),
     Scene("tutorial room", "room-radiance-tutorial/rt_room.obj", "df_radiance.txt",
@@ -119,7 +123,7 @@ def main():
     absent = []
     for scene in SCENES:
         models = [folder.resolve() / scene.model for folder in given.folders]
-        model = next((model for model in models if model.is_file()), None)
+        model = next((model for model in models if (model.parent / scene.reference).is_file()), None)
         if model is None:
             absent.append(scene.title)
             continue
@@ -128,7 +132,8 @@ def main():
                 str(pathlib.Path(given.program).resolve()), scene, model, accuracy, given.runs)
             print(f"| {scene.title} ({sensors}; {scene.noise}) | Clerestory, {accuracy} | {seconds:.2f} | {rms:.1f} | "
                   f"{bias:+.1f} | {p95:.1f} | {most:.1f} |", flush=True)
-        for level, *figures in RADIANCE.get(scene.title, []):
+        by_paths = scene.reference.endswith("_paths.csv")
+        for level, *figures in () if by_paths else RADIANCE.get(scene.title, []):
             print(f"| | Radiance, {level} | " + " | ".join(figures) + " |", flush=True)
     if absent:
         print("Not in the folders given: " + ", ".join(absent), file=sys.stderr)

@@ -19,9 +19,9 @@ namespace {
 constexpr float touching_m = 1e-5F;       // below this a point counts as in a plane
 constexpr float linearDeviation = 0.29F;  // 1 / sqrt(12): rms of a linear ramp, of its whole rise
 // Calibrated on the furnished office (docs/validation.md): errors of surfaces against time.
-constexpr float rayNoise = 4.0F;  // of what rays bring together, in thresholds of a link: noise averages
+constexpr float rayNoise = 2.0F;  // of what rays bring together, in thresholds of a link: noise averages
 constexpr float raysInsteadOfLinks = 32.0F;  // up to so many, links are not even looked for
-constexpr float weakRaysLeast = 2.0F, weakRaysMost = 256.0F;
+constexpr float weakRaysLeast = 16.0F, weakRaysMost = 256.0F;
 constexpr float clusterTakes = 5.0F;  // thresholds that a cluster takes as one mean
 
 constexpr float farApart = 0.1F;  // (radii) / distance below which centres stand for elements

@@ -24,9 +24,12 @@ struct Place {
   glm::vec3 point;
 };
 
+/// Smaller surfaces are not compared.
+inline constexpr double smallestSurface_m2 = 0.1;
+
 /// Illuminances that two solutions of one stage are compared by.
 struct Measured {
-  std::vector<double> area_m2, surface_lx;  ///< surfaces of more than 0.1 m²
+  std::vector<double> area_m2, surface_lx;  ///< surfaces of more than that; area 0: not compared
   std::vector<double> place_lx;
 };
 
@@ -131,7 +134,7 @@ Measured measure(const Stage<K>& stage, std::vector<Radiosity<K>> rooms) {
   SolvedLight<K> inside(stage.world());
   for (std::size_t i = 0; i < rooms.size(); ++i) inside.add(stage.domains[i], std::move(rooms[i]));
   for (const SurfaceValue& row : measureSurfaces(inside, 0.0)) {
-    if (row.area_m2 <= 0.1) continue;
+    if (row.area_m2 <= smallestSurface_m2) continue;
     measured.area_m2.push_back(row.area_m2);
     measured.surface_lx.push_back(row.illuminanceMean_lx);
   }

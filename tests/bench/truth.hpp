@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The truth of a stage: converged runs of the rival, kept in a file so that they are made only once.
+// The truth of a stage: surfaces by paths, places by a gather over converged runs of the rival; kept in a
+// file so that it is made only once. The rival's own surfaces would not do: where two are near each other,
+// its elements mix what is open with what is covered.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "paths.hpp"
 #include "rival.hpp"
 #include "stage.hpp"
 
@@ -21,6 +24,7 @@ struct Truth {
 struct TruthSettings {
   RivalSettings rival;
   std::uint32_t gatherRays = 4096;  ///< of a place
+  std::size_t paths = 2000000;      ///< of all surfaces
   int runs = 2;                     ///< with seeds of their own, that differ from those of what is compared
 };
 
@@ -108,6 +112,16 @@ Measured convergedRun(const Stage<K>& stage, const TruthSettings& settings, std:
     light.add(stage.domains[i], std::move(solution.radiosity));
   }
   Measured measured = measure(stage, std::move(rooms));
+  // A surface that stands in or on others is not compared: what is covered of it has no light of its own.
+  constexpr double shutMost = 0.05;
+  std::size_t row = 0;
+  for (const PathSurface& surface : surfacesByPaths(stage, settings.paths, mixKey(seed))) {
+    if (surface.area_m2 <= smallestSurface_m2) continue;
+    measured.surface_lx[row] = surface.illuminance_lx;
+    if (surface.shut > shutMost) measured.area_m2[row] = 0.0;
+    ++row;
+  }
+  if (row != measured.surface_lx.size()) throw std::runtime_error("surfaces by paths are others");
   forEachIndex(stage.places.size(), 1, [&](std::size_t i) {
     measured.place_lx[i] = gatherAt(light, stage, stage.places[i], settings.gatherRays, mixKeys(seed, i));
   });
@@ -121,7 +135,7 @@ Truth makeTruth(const Stage<K>& stage, const std::string& scene, const std::file
   head << "# " << scene << ": " << stage.world().pieces().size() << " pieces; elements of "
        << settings.rival.elementSize_m << " m, " << settings.rival.raysPerElement << " rays, "
        << settings.rival.directPoints << " points; " << settings.gatherRays << " rays at "
-       << stage.places.size() << " places; " << settings.runs << " runs";
+       << stage.places.size() << " places; " << settings.paths << " paths; " << settings.runs << " runs";
   const TruthFile file(folder / ("truth_" + scene + ".csv"), head.str());
   std::vector<Measured> runs;
   if (!file.read(runs)) {

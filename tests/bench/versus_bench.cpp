@@ -214,9 +214,11 @@ void compare(const World& world, const Study& study, const std::string& scene, c
   settings.rival = {static_cast<float>(options.truthSize_m), options.truthRays, 4, {240.0F, 12.0F}, 1e-5};
   settings.runs = options.truthRuns;
   const Truth truth = makeTruth(stage, scene, options.folder, settings);
-  std::cout << scene << ": " << truth.mean.surface_lx.size()
-            << " surfaces over 0.1 m², standard error of the truth " << 100.0 * truth.surfacesError << " %; "
-            << truth.mean.place_lx.size() << " places, " << 100.0 * truth.placesError << " %\n";
+  const auto& areas_m2 = truth.mean.area_m2;
+  std::cout << scene << ": "
+            << std::count_if(areas_m2.begin(), areas_m2.end(), [](double own_m2) { return own_m2 > 0.0; })
+            << " free surfaces over 0.1 m², standard error of the truth " << 100.0 * truth.surfacesError
+            << " %; " << truth.mean.place_lx.size() << " places, " << 100.0 * truth.placesError << " %\n";
   std::vector<Run> runs;
   const Report report = [&](const Run& run) {
     runs.push_back(run);
