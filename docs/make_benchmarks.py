@@ -7,6 +7,7 @@
   docs/make_benchmarks.py build/release convergence    its section 4 and Figures 2 to 5, the two oracles
   docs/make_benchmarks.py build/release station        its section 5.4
   docs/make_benchmarks.py build/release growth         finer furniture, the same light
+  docs/make_benchmarks.py build/release columns        what more columns cost
 
 The figures for the text are printed as Markdown. With --draw-only the tables are taken as they are. Scenes and
 what is kept between runs lie in BUILD/bench. Needs nothing but Python 3.9.
@@ -272,11 +273,29 @@ def show_growth():
           "--title", "Time of all steps with finer furniture", "--y-label", "CPU s")
 
 
+def measure_columns(build, folder):
+    run([build / "bench_columns", "--folder", folder])
+    return ["columns.csv"]
+
+
+def show_columns():
+    rows = []
+    for row in rows_of("columns.csv"):
+        rows.append([row["scene"], row["columns"], f"{float(row['first_s']):.3f}", f"{float(row['steps_s']):.3f}",
+                     f"{float(row['ratio']):.2f}", grouped(row["nodes"]), grouped(row["geometry_bytes_per_node"]),
+                     grouped(row["value_bytes_per_node"])])
+    print_table(["scene", "columns", "first step, CPU s", "its reflections, CPU s", "of one column's", "nodes",
+                 "geometry, bytes a node", "light, bytes a node"], rows)
+    chart("columns.csv", "columns.svg", "-x", "columns", "-y", "ratio", "--linear", "y", "--series", "scene",
+          "--title", "What more columns cost", "--y-label", "CPU time, of one column's")
+
+
 BENCHMARKS = {
     "paper": (measure_paper, show_paper),
     "convergence": (measure_convergence, show_convergence),
     "station": (measure_station, show_station),
     "growth": (measure_growth, show_growth),
+    "columns": (measure_columns, show_columns),
 }
 
 

@@ -385,7 +385,7 @@ Verdict Interactions<K>::judgeSeen(const Receiver& receiver, const Candidate& ca
 template <int K>
 void Interactions<K>::add(Incoming<K>& incoming, const Receiver& receiver, const Candidate& candidate) const {
   if (receiver.isCluster()) {
-    addToCluster(incoming.six, receiver, candidate.sender, candidate.link);
+    addToCluster(*incoming.six, receiver, candidate.sender, candidate.link);
   } else {
     addToElement(incoming.own, receiver, candidate.sender, candidate.link);
   }
@@ -545,7 +545,7 @@ Verdict Interactions<K>::receiveFromPortal(const Receiver& receiver, const Porta
     if (power_lm > threshold_lm && 0.5F * sight.rise_lx * receiver.weight > threshold_lm)
       return Verdict::refineReceiver;
     const auto six = clusterLightFromPortal(light_, portal, tree_, receiver.node, tally.rays);
-    for (std::size_t k = 0; k < 6; ++k) incoming.six[k].irradiance_lx += six[k];
+    for (std::size_t k = 0; k < 6; ++k) (*incoming.six)[k].irradiance_lx += six[k];
     return Verdict::accept;
   }
   const auto isUneven = [&](float visible) {

@@ -59,11 +59,11 @@ struct Received {
 template <int K>
 using SixReceived = std::array<Received<K>, 6>;
 
-/// What a receiver collects: an element in `own`, a cluster by direction.
+/// What a receiver collects: an element in `own`, a cluster by direction too, at the place that it is given.
 template <int K>
 struct Incoming {
   Received<K> own;
-  SixReceived<K> six{};
+  SixReceived<K>* six = nullptr;
 };
 
 /// The radiosity that a step sends, pulled up to the root, and the scalars that the oracle looks at.

@@ -73,11 +73,9 @@ void Transport<K>::transportLight(std::vector<Sender> senders) {
 template <int K>
 void Transport<K>::receive(const Receiver& receiver, std::vector<Sender> senders, Work& work) {
   Incoming<K> incoming;
+  if (receiver.isCluster()) incoming.six = &receivedByDirection_[receiver.node];
   std::vector<Sender> down = settle(receiver, std::move(senders), incoming, work);
-  if (receiver.isCluster()) {
-    receivedByDirection_[receiver.node] = incoming.six;
-    received_[receiver.node] = incoming.own;
-  } else if (receiver.node != noNode) {
+  if (receiver.node != noNode) {
     received_[receiver.node] = incoming.own;
   } else {
     work.grown[receiver.grown / 2]->received[receiver.grown % 2] = incoming.own;
@@ -224,8 +222,7 @@ void Transport<K>::mergeGrown() {
   }
   if (tree_.size() == before) return;
   unshot_.resize(tree_.size());
-  const std::size_t valueBytes = tree_.size() * (3 * sizeof(Columns<K>) + 3 * sizeof(float));
-  if (interactions_.mayGrow && tree_.bytes() + valueBytes > settings_.memoryBytes) {
+  if (interactions_.mayGrow && tree_.bytes() + valueBytes(tree_) > settings_.memoryBytes) {
     interactions_.mayGrow = false;
     diagnoses.push_back(
         {"S301",
@@ -286,13 +283,15 @@ void Transport<K>::pull(const std::vector<Columns<K>>& leaves) {
 }
 
 template <int K>
-Columns<K> Transport<K>::powerOf(const std::vector<Columns<K>>& perNode) const {
+template <class Value>
+Columns<K> Transport<K>::powerOfLeaves(Value&& of) const {
   std::array<double, K> sum{};
   for (NodeIndex node = 0; node < tree_.size(); ++node) {
     if (!tree_.isLeaf(node)) continue;
+    const Columns<K>& value = of(node);
     for (int c = 0; c < K; ++c) {
       sum[static_cast<std::size_t>(c)] +=
-          static_cast<double>(tree_.area_m2[node]) * static_cast<double>(perNode[node][c]);
+          static_cast<double>(tree_.area_m2[node]) * static_cast<double>(value[c]);
     }
   }
   Columns<K> power;
@@ -301,11 +300,21 @@ Columns<K> Transport<K>::powerOf(const std::vector<Columns<K>>& perNode) const {
 }
 
 template <int K>
+Columns<K> Transport<K>::powerOf(const std::vector<Columns<K>>& perNode) const {
+  return powerOfLeaves([&](NodeIndex node) -> const Columns<K>& { return perNode[node]; });
+}
+
+template <int K>
 Columns<K> Transport<K>::receivedPower() const {
-  std::vector<Columns<K>> irradiance_lx;
-  irradiance_lx.reserve(received_.size());
-  for (const Received<K>& received : received_) irradiance_lx.push_back(received.irradiance_lx);
-  return powerOf(irradiance_lx);
+  return powerOfLeaves([&](NodeIndex node) -> const Columns<K>& { return received_[node].irradiance_lx; });
+}
+
+// Of a node: what it sends and has received here, the sum and what is unshot where the steps are driven; of a
+// trunk's node its light by direction too.
+template <int K>
+std::size_t Transport<K>::valueBytes(const Hierarchy& tree) {
+  constexpr std::size_t ofNode = 3 * sizeof(Columns<K>) + 3 * sizeof(float) + sizeof(Received<K>);
+  return tree.size() * ofNode + tree.trunkSize() * (sizeof(Six<K>) + sizeof(SixReceived<K>));
 }
 
 // In a closed domain all power sent is received. Sampled visibility misses that by some tenths of a per cent,

@@ -51,6 +51,9 @@ class Transport {
   /// Share of all power sent so far that the links missed or overdid, before that was mended.
   [[nodiscard]] double unscaledDefect() const { return sent_lm_ > 0.0 ? missed_lm_ / sent_lm_ : 0.0; }
 
+  /// Bytes that light takes beside a tree while it is solved.
+  [[nodiscard]] static std::size_t valueBytes(const Hierarchy& tree);
+
   std::vector<Diagnosis> diagnoses;
 
  private:
@@ -84,6 +87,9 @@ class Transport {
   void closeViews();
   void evenViews();
   [[nodiscard]] Columns<K> receivedPower() const;
+  /// `of` gives a leaf's value.
+  template <class Value>
+  [[nodiscard]] Columns<K> powerOfLeaves(Value&& of) const;
 
   const World& world_;
   bool isOpen_;

@@ -179,12 +179,19 @@ def draw_slope(x, y, points, slope):
     yield '<path class="slope" d="M' + "L".join(f"{a:.1f} {b:.1f}" for a, b in places) + '"/>'
 
 
-def draw_legend(names, x, y, slope):
+def draw_legend(names, x, y, slope, points):
+    """In the corner that hides the fewest points."""
     entries = [*enumerate(names), *([(None, f"slope {slope:g}")] if slope is not None else [])]
-    wide = 34 + 7.5 * max(len(name) for _, name in entries)
-    left, top = x.end - wide - 8, y.end + 8
+    wide, high = 34 + 7.5 * max(len(name) for _, name in entries), 20 * len(entries) + 6
+
+    def hidden(corner):
+        return sum(corner[0] - 8 < x.place(a) < corner[0] + wide + 8 and corner[1] - 8 < y.place(b) < corner[1] + high + 8
+                   for a, b in points)
+
+    corners = [(left, top) for left in (x.end - wide - 8, x.begin + 8) for top in (y.end + 8, y.begin - high - 8)]
+    left, top = min(corners, key=hidden)
     yield (f'<rect class="ground" opacity=".85" x="{left:.1f}" y="{top}" width="{wide:.1f}" '
-           f'height="{20 * len(entries) + 6}"/>')
+           f'height="{high}"/>')
     for row, (i, name) in enumerate(entries):
         at = top + 16 + 20 * row
         if i is None:
@@ -214,7 +221,7 @@ def draw(series, arguments):
             yield f"{shape}><title>{title}</title></{shape[1:shape.index(' ')]}>"
     if arguments.slope is not None:
         yield from draw_slope(x, y, every, arguments.slope)
-    yield from draw_legend(list(series), x, y, arguments.slope)
+    yield from draw_legend(list(series), x, y, arguments.slope, every)
     yield "</svg>"
 
 

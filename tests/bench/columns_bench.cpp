@@ -31,7 +31,7 @@ double cpu_s() {
 template <int K>
 Columns<K> spread(float first) {
   Columns<K> columns;
-  for (int c = 0; c < K; ++c) columns[c] = std::ldexp(first, c % 4);
+  for (int c = 0; c < K; ++c) columns[c] = first * static_cast<float>(1 << (c % 4));
   return columns;
 }
 
@@ -91,6 +91,7 @@ Cost shoot(const Stage<K>& stage, const TransportSettings& settings) {
   checkColumns(tree, sum);
   cost.nodes = tree.size();
   cost.geometryBytes = tree.bytes();
+  cost.valueBytes = Transport<K>::valueBytes(tree);
   for (const Columns<K>& irradiance_lx : sum) cost.firstColumn_lx.push_back(irradiance_lx[0]);
   return cost;
 }
@@ -126,16 +127,19 @@ void measureOn(const std::filesystem::path& input, double accuracy, int repeats,
     table << study.modelFile.stem().string() << ',' << columns << ',' << cost.first_s << ',' << cost.steps_s
           << ',' << cost.first_s / one.first_s << ',' << cost.steps_s / one.steps_s << ','
           << (cost.first_s + cost.steps_s) / (one.first_s + one.steps_s) << ',' << cost.links << ','
-          << cost.rays << ',' << cost.nodes << std::endl;
+          << cost.rays << ',' << cost.nodes << ',' << cost.geometryBytes / cost.nodes << ','
+          << cost.valueBytes / cost.nodes << std::endl;
   }
 }
 
 int run(int argc, char** argv) {
   std::vector<std::filesystem::path> inputs;
+  std::filesystem::path folder = ".";
   double accuracy = 0.05;
   int repeats = 3;
   CLI::App app("The cost of columns");
   app.add_option("inputs", inputs, "studies or models of one room; the furnished one and the sample office");
+  app.add_option("--folder", folder, "where columns.csv is written");
   app.add_option("--accuracy", accuracy);
   app.add_option("--repeats", repeats, "the quickest counts");
   CLI11_PARSE(app, argc, argv);
@@ -143,9 +147,11 @@ int run(int argc, char** argv) {
     inputs = {std::filesystem::path(CLERESTORY_TEST_DATA) / "reference/furnished/furnished.obj",
               std::filesystem::path(CLERESTORY_SAMPLES) / "office/study.toml"};
   }
-  std::cout << "scene,columns,first_s,steps_s,first_ratio,steps_ratio,ratio,links,rays,nodes\n";
-  for (const std::filesystem::path& input : inputs) measureOn(input, accuracy, repeats, std::cout);
-  return 0;
+  std::ofstream table(folder / "columns.csv");
+  table << "scene,columns,first_s,steps_s,first_ratio,steps_ratio,ratio,links,rays,nodes,"
+           "geometry_bytes_per_node,value_bytes_per_node\n";
+  for (const std::filesystem::path& input : inputs) measureOn(input, accuracy, repeats, table);
+  return table ? 0 : 1;
 }
 
 }  // namespace
