@@ -306,7 +306,7 @@ class AirSurvey {
       for (std::uint32_t a = firstPlace_[side]; a < firstPlace_[side + 1]; ++a) {
         for (std::uint32_t b = firstPlace_[side]; b < a; ++b) {
           if (!places_[a].isFree || !places_[b].isFree || root(a) == root(b)) continue;
-          if (isOpen(hover(a), hover(b))) join(a, b);
+          if (isOpenWide(hover(a), hover(b))) join(a, b);
         }
       }
     });
@@ -377,7 +377,7 @@ class AirSurvey {
     if (!other.isFree) return false;
     const glm::vec3 point = places_[place].point + met.distance_m * direction + rayOffset_m * other.normal;
     const glm::vec3 above = point + 0.9F * clearance_m * other.normal;
-    return isOpen(point, above) && isOpen(above, hover(met.place)) && isOpenWide(hover(place), above);
+    return isOpen(point, above) && isOpenWide(above, hover(met.place)) && isOpenWide(hover(place), above);
   }
 
   /// Joins the airs that bundles pass between. Which of them are tried first does not matter: one ray of

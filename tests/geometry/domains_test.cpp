@@ -85,6 +85,20 @@ TEST(Domains, NarrowSlitStaysClosed) {
   EXPECT_EQ(upwardAt(building, 0.0), std::set<std::int32_t>{building.rooms[0].domain});
 }
 
+// Two sashes that overlap and do not touch: along the rail a line of sight leads out between them.
+TEST(Domains, SlidingSashesAreClosed) {
+  Drawing drawing;
+  addRoomWithHole(drawing, kLow, kHigh, {1.0, 0.5, 3.0, 2.5});
+  addBox(drawing, {1.0, -0.03, 0.4}, {3.0, 0.03, 0.5}, wood);
+  addBox(drawing, {1.0, -0.03, 2.5}, {3.0, 0.03, 2.6}, wood);
+  drawing.face(upright(1.0, 0.5, 2.05, 2.5, -0.01), glass);
+  drawing.face(upright(1.95, 0.5, 3.0, 2.5, 0.01), glass);
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 1U);
+  EXPECT_FALSE(building.domains[static_cast<std::size_t>(building.rooms[0].domain)].open);
+  EXPECT_EQ(building.portals.size(), 2U);
+}
+
 TEST(Domains, DoorHoleOpensTheRoom) {
   Drawing drawing;
   addRoomWithHole(drawing, kLow, kHigh, {1.0, 0.0, 1.8, 2.0});
