@@ -99,8 +99,17 @@ void writeMaterials(const Study& study, Writer& out) {
 
 void writeSky(const Study& study, Writer& out) {
   out.section("[sky]");
-  out.line("type", inQuotes(skyTypeName(study.sky.cieType)));
-  out.line("diffuse_horizontal_lx", study.sky.diffuseHorizontal_lx);
+  out.line("type", inQuotes(skyTypeName(study.sky)));
+  if (study.sky.irradiance) {
+    out.line("direct_normal_w_m2", study.sky.irradiance->directNormal_W_m2);
+    out.line("diffuse_horizontal_w_m2", study.sky.irradiance->diffuseHorizontal_W_m2);
+  } else {
+    out.line("diffuse_horizontal_lx", study.sky.diffuseHorizontal_lx);
+    out.line("direct_normal_lx", study.sky.directNormal_lx);
+  }
+  if (study.sky.time) {
+    out.line("time", clockTimeText(*study.sky.time));
+  }
   if (study.sky.sun_deg) {
     out.line("sun", "{ altitude = " + numberText(study.sky.sun_deg->x) +
                         ", azimuth = " + numberText(study.sky.sun_deg->y) + " }");

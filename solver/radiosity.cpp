@@ -23,15 +23,26 @@ Columns<K> SolvedLight<K>::exitance(const RayScene::Hit& hit, const glm::vec3& p
   const Radiosity<K>& own = *of(world_.building.sideDomain[side]);
   const NodeIndex leaf = own.tree.leafAt(rootOfSide_[side], point);
   const std::uint32_t treeSide = own.tree.treeSide[leaf];
-  Columns<K> result = own.reflectance[treeSide] * own.irradianceAt(leaf, point);
+  Columns<K> irradiance_lx = own.irradianceAt(leaf, point);
+  if (!own.sunlight.empty() && own.sunlight.mayReach[leaf] != 0) {
+    const glm::vec3& normal = own.tree.normal(leaf);
+    irradiance_lx += world_.layout.template light<K>(
+        world_.layout.sunColumn(), glm::dvec3(sunlightAt(world_, point + rayOffset_m * normal, normal)));
+  }
+  Columns<K> result = own.reflectance[treeSide] * irradiance_lx;
   if (withEmission) result += own.exitance_lm_m2[treeSide];
   return result;
 }
 
 template <int K>
 Columns<K> SolvedLight<K>::skyLuminance(const glm::vec3& direction) const {
-  return world_.layout.template light<K>(
+  Columns<K> luminance = world_.layout.template light<K>(
       world_.layout.skyColumn(), glm::dvec3(static_cast<double>(world_.sky.luminance_cd_m2(direction))));
+  if (world_.sun && direction.z < 0.0F) {
+    luminance +=
+        world_.layout.template light<K>(world_.layout.sunColumn(), glm::dvec3(world_.sun->ground_cd_m2));
+  }
+  return luminance;
 }
 
 template <int K>

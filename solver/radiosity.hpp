@@ -10,6 +10,7 @@
 
 #include "columns.hpp"
 #include "hierarchy.hpp"
+#include "sunlight.hpp"
 #include "world.hpp"
 
 namespace clerestory {
@@ -32,11 +33,12 @@ struct Plane {
 template <int K>
 struct Radiosity {
   Hierarchy tree;
-  std::vector<Columns<K>> irradiance_lx;   ///< #nodes; leaves hold all light received
+  std::vector<Columns<K>> irradiance_lx;   ///< #nodes; leaves hold all light received but the sun's beam
   std::vector<Columns<K>> reflectance;     ///< #sides of the tree
   std::vector<Columns<K>> exitance_lm_m2;  ///< #sides of the tree: own emission
   std::vector<std::uint32_t> emitters;     ///< sides of the tree that have some
-  std::vector<Plane<K>> planes;            ///< #nodes, or empty before `reconstruct`
+  std::vector<Plane<K>> planes{};          ///< #nodes, or empty before `reconstruct`
+  Sunlight sunlight{};                     ///< the beam; empty without sun
 
   /// Irradiance of a point of a leaf: of its plane if there is one, else its mean.
   [[nodiscard]] Columns<K> irradianceAt(NodeIndex leaf, const glm::vec3& point) const {
@@ -47,6 +49,11 @@ struct Radiosity {
   }
   [[nodiscard]] Columns<K> reflected(NodeIndex leaf) const {
     return reflectance[tree.treeSide[leaf]] * irradiance_lx[leaf];
+  }
+  /// Mean illuminance of a leaf by the sun's beam.
+  [[nodiscard]] Columns<K> sunlightOf(const ColumnLayout& layout, NodeIndex leaf) const {
+    if (sunlight.empty()) return {};
+    return layout.template light<K>(layout.sunColumn(), glm::dvec3(sunlight.illuminance_lx[leaf]));
   }
 };
 

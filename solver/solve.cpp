@@ -125,8 +125,10 @@ Solution solve(const Building& building, const Study& study, const SolveOptions&
       solution = solveColumns<2>(world, study, options);
     } else if (used <= 4) {
       solution = solveColumns<4>(world, study, options);
-    } else {
+    } else if (used <= 8) {
       solution = solveColumns<8>(world, study, options);
+    } else {
+      solution = solveColumns<12>(world, study, options);
     }
   });
   return solution;

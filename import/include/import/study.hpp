@@ -32,10 +32,26 @@ struct MaterialRule {
   std::optional<glm::dvec3> exitance_lm_m2;
 };
 
+/// A moment as a clock on the wall shows it.
+struct ClockTime {
+  int year = 2026, month = 3, day = 21;
+  double hour_h = 12.0;          ///< since midnight
+  std::optional<double> zone_h;  ///< east of UTC; empty: the site's
+};
+
+/// What a weather file or a pyranometer states. [W/m²]
+struct Irradiance {
+  double directNormal_W_m2 = 0.0, diffuseHorizontal_W_m2 = 0.0;
+};
+
 struct SkySettings {
-  int cieType = 16;  ///< 1 … 15 as CIE S 011, 16 the traditional overcast sky; 0: uniform (same as 5)
+  int cieType = 16;      ///< 1 … 15 as CIE S 011, 16 the traditional overcast sky; 0: uniform (same as 5)
+  bool isPerez = false;  ///< Perez all-weather sky in place of a CIE type
   double diffuseHorizontal_lx = 10000.0;
-  std::optional<glm::dvec2> sun_deg;  ///< altitude, azimuth from north over east
+  double directNormal_lx = 0.0;          ///< the sun's beam; 0 leaves it out
+  std::optional<Irradiance> irradiance;  ///< in place of both illuminances; for Perez
+  std::optional<glm::dvec2> sun_deg;     ///< altitude, azimuth from north over east; or …
+  std::optional<ClockTime> time;         ///< … the time that gives them
 };
 
 struct GridSettings {
@@ -77,8 +93,11 @@ struct Study {
   std::vector<std::string> assumptions;  ///< what was taken for granted, in sentences for the report
 };
 
+/// "2026-03-21T10:00:00", with the zone where the time has one of its own.
+std::string clockTimeText(const ClockTime& time);
+
 /// Reads a study. Unknown keys are an error that names the nearest known one; keys of later versions
-/// (luminaires, sun, openings) are an error that says so. Throws InputError with file and line.
+/// (luminaires, openings) are an error that says so. Throws InputError with file and line.
 Study readStudy(const std::filesystem::path& file);
 
 /// The study of a model alone: overcast sky of 10,000 lx, a grid 0.85 m above each floor.
