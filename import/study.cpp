@@ -86,14 +86,20 @@ std::optional<glm::dvec3> statedReflectance(const TomlSection& section) {
 void readMaterials(const TomlSection& file, Study& study) {
   for (const auto& [glob, section] : file.named("materials")) {
     section.allowOnly({"reflectance", "transmittance", "panes", "diffusing", "glass", "exitance"});
-    section.refuse({"glass"});
-    if (section.boolean("diffusing").value_or(false)) {
-      section.fail("diffusing", "diffusing = true is not supported by this version; take it out");
-    }
     MaterialRule rule;
     rule.glob = glob;
     rule.reflectance = statedReflectance(section);
     rule.transmittance = section.color("transmittance", kFraction);
+    rule.diffusing = section.boolean("diffusing");
+    if (const auto preset = section.text("glass")) {
+      rule.glass = glassPreset(*preset);
+      if (!rule.glass) {
+        section.fail("glass", "glass \"" + cleanName(*preset) + "\" is no preset; there is \"cie171-6mm\"");
+      }
+      if (rule.transmittance || section.has("panes")) {
+        section.fail("glass", "states a preset and a transmittance or panes; the preset has its own");
+      }
+    }
     if (const auto panes = section.integer("panes", 1, 10)) {
       rule.panes = static_cast<int>(*panes);
     }
@@ -184,10 +190,31 @@ void readGround(const TomlSection& file, Study& study) {
   section->allowOnly({"reflectance", "model"});
   study.groundReflectance = section->number("reflectance", kReflectance).value_or(study.groundReflectance);
   const std::string model = section->text("model").value_or("uniform");
-  if (model != "uniform") {
-    section->fail("model", model == "shaded"
-                               ? "model = \"shaded\" is not supported by this version; use \"uniform\""
-                               : "model \"" + cleanName(model) + "\" is not known; use \"uniform\"");
+  if (model != "uniform" && model != "shaded") {
+    section->fail("model", "model \"" + cleanName(model) + "\" is not known; use \"uniform\" or \"shaded\"");
+  }
+  study.groundIsShaded = model == "shaded";
+}
+
+void readOpenings(const TomlSection& file, Study& study) {
+  constexpr double offPlaneMost_m = 0.01;
+  for (const TomlSection& section : file.list("opening")) {
+    section.allowOnly({"polygon"});
+    const std::vector<glm::dvec3> outline = section.outline("polygon");
+    glm::dvec3 normal(0.0);
+    for (std::size_t i = 2; i < outline.size(); ++i)
+      normal += glm::cross(outline[i - 1] - outline[0], outline[i] - outline[0]);
+    const double length = glm::length(normal);
+    if (!(length > 1e-4)) {
+      section.fail("polygon", "polygon has no area");
+    }
+    for (const glm::dvec3& corner : outline) {
+      if (std::abs(glm::dot(corner - outline[0], normal)) > offPlaneMost_m * length) {
+        section.fail("polygon",
+                     "polygon is not flat: a corner lies more than 1 cm off the plane of the others");
+      }
+    }
+    study.openings.push_back(outline);
   }
 }
 
@@ -337,7 +364,7 @@ Study readStudy(const std::filesystem::path& file) {
   const TomlSection root(table, "", name);
   root.allowOnly({"model", "site", "materials", "sky", "ground", "glazing", "opening", "luminaire", "grid",
                   "view", "accuracy", "report"});
-  root.refuse({"luminaire", "opening"});
+  root.refuse({"luminaire"});
   const std::filesystem::path folder = file.parent_path();
   Study study;
   readModelSection(root, folder, study);
@@ -346,6 +373,7 @@ Study readStudy(const std::filesystem::path& file) {
   readSky(root, study);
   readGround(root, study);
   readGlazing(root, study);
+  readOpenings(root, study);
   readGrids(root, folder, study);
   readViews(root, study);
   readAccuracy(root, study);

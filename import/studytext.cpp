@@ -50,6 +50,21 @@ bool skyNeedsSun(const SkySettings& sky) {
   return sky.isPerez || (cieType != 0 && cieType != 1 && cieType != 3 && cieType != 5 && cieType != 16);
 }
 
+std::optional<GlassKind> glassPreset(const std::string& name) {
+  if (name == "cie171-6mm") {
+    return GlassKind::cie171Clear;
+  }
+  return std::nullopt;
+}
+
+std::string glassPresetName(GlassKind kind) {
+  return kind == GlassKind::cie171Clear ? "cie171-6mm" : "";
+}
+
+double presetTransmittance(GlassKind kind) {
+  return kind == GlassKind::cie171Clear ? 0.8788 : 0.0;
+}
+
 std::string clockTimeText(const ClockTime& time) {
   const auto two = [](int value) { return (value < 10 ? "0" : "") + std::to_string(value); };
   const auto inHours = [&](double hours) {

@@ -13,6 +13,9 @@ namespace clerestory {
 std::optional<int> skyTypeNumber(const std::string& name);
 std::string skyTypeName(const SkySettings& sky);
 bool skyNeedsSun(const SkySettings& sky);  ///< whether the luminance depends on the angle to the sun
+std::optional<GlassKind> glassPreset(const std::string& name);
+std::string glassPresetName(GlassKind kind);
+double presetTransmittance(GlassKind kind);  ///< at normal incidence
 bool isUnit(const std::string& text);
 
 /// What a study states itself.

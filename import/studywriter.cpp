@@ -88,6 +88,12 @@ void writeMaterials(const Study& study, Writer& out) {
     if (rule.transmittance) {
       out.line("transmittance", color(*rule.transmittance));
     }
+    if (rule.glass) {
+      out.line("glass", inQuotes(glassPresetName(*rule.glass)));
+    }
+    if (rule.diffusing) {
+      out.line("diffusing", std::string(*rule.diffusing ? "true" : "false"));
+    }
     if (rule.panes) {
       out.line("panes", std::to_string(*rule.panes));
     }
@@ -116,6 +122,7 @@ void writeSky(const Study& study, Writer& out) {
   }
   out.section("[ground]");
   out.line("reflectance", study.groundReflectance);
+  out.line("model", inQuotes(study.groundIsShaded ? "shaded" : "uniform"));
   out.section("[glazing]");
   out.line("dirt", study.dirtFactor);
   out.line("frame", study.frameFactor);
@@ -173,6 +180,12 @@ std::string studyToml(const Study& study) {
   writeSite(study.site, out);
   writeMaterials(study, out);
   writeSky(study, out);
+  for (const std::vector<glm::dvec3>& outline : study.openings) {
+    std::string corners;
+    for (const glm::dvec3& corner : outline) corners += (corners.empty() ? "" : ", ") + list(corner);
+    out.section("[[opening]]");
+    out.line("polygon", "[" + corners + "]");
+  }
   for (const GridSettings& grid : study.grids) {
     writeGrid(grid, out);
   }

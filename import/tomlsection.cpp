@@ -190,6 +190,20 @@ std::vector<glm::dvec2> TomlSection::polygon(const char* key) const {
   return corners;
 }
 
+std::vector<glm::dvec3> TomlSection::outline(const char* key) const {
+  const toml::node* node = table_->get(key);
+  const toml::array* array = node == nullptr ? nullptr : node->as_array();
+  if (array == nullptr || array->size() < 3) {
+    fail(key, std::string(key) + " has to be a list of three or more [x, y, z], in metres");
+  }
+  std::vector<glm::dvec3> corners;
+  for (const toml::node& element : *array) {
+    const std::vector<double> values = numbersOf(element, key, 3, kAnyNumber);
+    corners.emplace_back(values[0], values[1], values[2]);
+  }
+  return corners;
+}
+
 std::optional<ClockTime> TomlSection::time(const char* key) const {
   const toml::node* node = table_->get(key);
   if (node == nullptr) {

@@ -64,6 +64,7 @@ class SolvedLight {
   explicit SolvedLight(const World& world)
       : world_(world),
         rootOfSide_(2 * world.pieces().size(), noNode),
+        diffused_cd_m2_(world.pieces().size()),
         domains_(world.building.domains.size()) {}
 
   void add(std::int32_t domain, Radiosity<K> radiosity);
@@ -82,6 +83,12 @@ class SolvedLight {
   /// Luminance seen outdoors along a ray that starts outside or on the outer face of a pane. [cd/m²]
   [[nodiscard]] Columns<K> outsideLuminance(const glm::vec3& from, const glm::vec3& direction) const;
 
+  /// Finds how brightly scattering panes shine inwards; to be called when the outside is solved.
+  void lightDiffusingPanes();
+  /// Luminance that a pane shows inside at a point of it, to one who looks along `direction`. [cd/m²]
+  [[nodiscard]] Columns<K> paneLuminance(std::uint32_t piece, const glm::vec3& onPane,
+                                         const glm::vec3& direction) const;
+
   /// Luminance that a portal's point shows towards `receiver`, after the pane's transmittance. [cd/m²]
   [[nodiscard]] Columns<K> behindPortal(const Portal& portal, const glm::vec3& receiver,
                                         const glm::vec3& onPane) const;
@@ -97,6 +104,7 @@ class SolvedLight {
  private:
   const World& world_;
   std::vector<NodeIndex> rootOfSide_;
+  std::vector<Columns<K>> diffused_cd_m2_;  // #pieces, of scattering panes
   std::vector<std::optional<Radiosity<K>>> domains_;
 };
 

@@ -61,10 +61,9 @@ std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32
     const Glass& glass = world.glassOf(hit.piece);
     const glm::vec3 normal = world.normalOf(hit.side());
     const float cosine = std::abs(glm::dot(direction, normal));
-    if (withDirect) {
-      const Columns<K> tint = world.layout.template property<K>(world.tintOf(hit.piece));
-      sum += weight * world.portalFactor() * glass.transmittance(cosine) *
-             (tint * light.outsideLuminance(point, direction));
+    if (withDirect) sum += weight * light.paneLuminance(hit.piece, point, direction);
+    if (world.materialOf(hit.piece).diffusing) {
+      return sum + weight * std::numbers::inv_pi_v<float> * light.exitance(hit, point, false);
     }
     weight *= glass.reflectance(cosine);
     direction = glm::reflect(direction, normal);

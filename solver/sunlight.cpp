@@ -40,10 +40,11 @@ Passed passedAlong(const World& world, glm::vec3 from, const glm::vec3& directio
       passed.share = share;
       return passed;
     }
-    if (!world.materialOf(hit.piece).glazing) return passed;
+    const Material& material = world.materialOf(hit.piece);
+    if (!material.glazing || material.diffusing) return passed;  // what it scatters is the pane's own light
     if (pane == 0) passed.firstPane = hit.piece;
     const float cosine = std::abs(glm::dot(direction, world.normalOf(hit.side())));
-    share *= world.portalFactor() * world.glassOf(hit.piece).transmittance(cosine) *
+    share *= world.portalFactor(hit.piece) * world.glassOf(hit.piece).transmittance(cosine) *
              glm::vec3(world.tintOf(hit.piece));
     from = end + rayOffset_m * direction;
   }

@@ -29,7 +29,10 @@ World::World(const Building& buildingIn, const Study& study, const Daylight& day
       portalFactor_(static_cast<float>(study.dirtFactor * study.frameFactor)) {
   for (const Material& material : building.model.materials) {
     glass_.emplace_back();
-    if (material.glazing) glass_.back().emplace(luminanceOf(material.transmittance), material.panes);
+    if (!material.glazing) continue;
+    glass_.back() = material.glass == GlassKind::cie171Clear
+                        ? Glass::cie171Clear()
+                        : Glass(luminanceOf(material.transmittance), material.panes);
   }
   firstCorner_.push_back(0);
   for (std::size_t piece = 0; piece < pieces().size(); ++piece) {

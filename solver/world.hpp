@@ -47,7 +47,10 @@ class World {
   }
   /// Glass of a glazing piece, and the factor on its transmittance by dirt and undrawn frames.
   [[nodiscard]] const Glass& glassOf(std::uint32_t piece) const { return *glass_[pieces().material[piece]]; }
-  [[nodiscard]] float portalFactor() const { return portalFactor_; }
+  /// An opening has neither.
+  [[nodiscard]] float portalFactor(std::uint32_t piece) const {
+    return materialOf(piece).transmittance == glm::dvec3(1.0) ? 1.0F : portalFactor_;
+  }
   /// Colour of a glazing's transmittance beside its luminance, 1 where it is grey.
   [[nodiscard]] glm::dvec3 tintOf(std::uint32_t piece) const;
 
