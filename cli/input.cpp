@@ -70,6 +70,7 @@ Building readBuilding(const Study& study, std::vector<Diagnosis>& diagnoses,
   begin("reading the model");
   Scene scene = readModel(study.modelFile, study.model);
   applyMaterialRules(study, scene);
+  addSurroundings(study, scene);
   keep(scene.diagnoses);
 
   begin("cleaning the model");

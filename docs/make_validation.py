@@ -27,6 +27,8 @@ class Scene:
     left_out: str = ""  # tag of sensors that are not compared
 
 
+CLEAR = ('[sky]\ntype = "cie-12"\ndiffuse_horizontal_lx = 7761\ndirect_normal_lx = 69162\n'
+         'sun = { altitude = 35.836, azimuth = 141.922 }\n[ground]\nreflectance = 0.2\n')
 OVERCAST = '[sky]\ntype = "cie-overcast"\ndiffuse_horizontal_lx = 10000\n[ground]\nreflectance = 0.2\n'
 SCENES = [
     Scene("empty office", "refoffice/refoffice.obj", "refoffice_overcast_paths.csv",
@@ -39,6 +41,10 @@ SCENES = [
           OVERCAST + '[materials."glazing*"]\ntransmittance = 0.65\n', "Radiance, 0.4 %"),
     Scene("floor of twelve offices", "floor/floor.obj", "floor_overcast.csv",
           OVERCAST + '[materials."glazing*"]\ntransmittance = 0.65\n', "1.7 %", left_out="corridor"),
+    Scene("empty office, clear sky with sun", "refoffice/refoffice.obj", "refoffice_clear.csv", CLEAR, "0.4 %"),
+    Scene("furnished office, clear sky with sun", "furnished/furnished.obj", "furnished_clear.csv", CLEAR, "0.4 %"),
+    Scene("floor of twelve offices, clear sky with sun", "floor/floor.obj", "floor_clear.csv", CLEAR, "1.2 %",
+          left_out="corridor"),
     Scene("tutorial room", "room-radiance-tutorial/rt_room.obj", "df_radiance.txt",
           OVERCAST + '[materials."Glazing"]\ntransmittance = 0.596\n', "0.5 %"),
     Scene("closed cube", "cube/cube.obj", "cube_emitter.csv",
@@ -57,7 +63,18 @@ RADIANCE = {
     "floor of twelve offices": [
         ("low", "3.7", "43.0", "-34.5", "89", "96"), ("medium", "86.9", "16.7", "-10.7", "37", "62"),
         ("good (420 sensors; time extrapolated)", "770", "3.7", "-1.7", "7.9", "")],
+    "empty office, clear sky with sun": [
+        ("low", "0.27", "40.4", "-35.7", "63", "69"), ("medium", "2.7", "10.4", "-8.3", "19", "24"),
+        ("good", "11.3", "5.2", "-4.1", "8.6", "10.5"), ("high", "152", "2.2", "-1.8", "3.7", "4.4")],
+    "furnished office, clear sky with sun": [
+        ("low", "0.38", "38.8", "-34.2", "62", "74"), ("medium", "8.6", "11.0", "-8.5", "20", "41"),
+        ("good", "53.3", "6.1", "-4.2", "9.2", "47")],
+    "floor of twelve offices, clear sky with sun": [
+        ("low", "4.0", "40.6", "-33.6", "83", "93"), ("medium", "93.1", "14.9", "-9.9", "36", "52")],
 }
+
+PATCH_EDGE_M = 0.04       # sensors so near the edge of a sun patch are left out: the reference's sun is a point
+PATCH_STEP_LX = 5000.0    # a fifth of the beam behind the glass
 
 
 def read_reference(file, left_out):
@@ -93,11 +110,30 @@ def cpu_seconds(command):
     return usage.ru_utime + usage.ru_stime
 
 
+def around(truth):
+    """Each sensor's place and four beside it, which tell whether a sun patch ends there."""
+    for x, y, z, _ in truth:
+        for dx, dy in ((0, 0), (PATCH_EDGE_M, 0), (-PATCH_EDGE_M, 0), (0, PATCH_EDGE_M), (0, -PATCH_EDGE_M)):
+            yield x + dx, y + dy, z
+
+
+def away_from_patch_edges(rows, truth):
+    """The sensors' illuminances, and those of the reference, where no sun patch ends."""
+    kept = []
+    for i, (_, _, _, true) in enumerate(truth):
+        sun = [float(row["sun_lx"]) for row in rows[5 * i:5 * i + 5]]
+        if max(sun) - min(sun) <= PATCH_STEP_LX:
+            kept.append((float(rows[5 * i]["illuminance_lx"]), true))
+    return [ours for ours, _ in kept], [true for _, true in kept]
+
+
 def measure(program, scene, model, accuracy, runs):
     truth = read_reference(model.parent / scene.reference, scene.left_out)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        lines = ["x_m,y_m,z_m"] + [f"{x},{y},{z}" for x, y, z, _ in truth]
+        has_sun = scene.study == CLEAR
+        places = around(truth) if has_sun else (row[:3] for row in truth)
+        lines = ["x_m,y_m,z_m"] + [f"{x},{y},{z}" for x, y, z in places]
         (folder / "points.csv").write_text("\n".join(lines) + "\n")
         (folder / "study.toml").write_text(
             f'[model]\nfile = "{model}"\nunits = "m"\nup = "z"\n{scene.study}'
@@ -106,8 +142,11 @@ def measure(program, scene, model, accuracy, runs):
                    "--no-pictures", "--quiet", "--threads", "2"]
         seconds = min(cpu_seconds(command) for _ in range(runs))
         with open(folder / "report" / "sensors.csv", newline="", encoding="utf-8") as table:
-            ours = [float(row["illuminance_lx"]) for row in csv.DictReader(table)]
-    return seconds, errors_of(ours, [row[3] for row in truth]), len(truth)
+            rows = list(csv.DictReader(table))
+    ours, true = [float(row["illuminance_lx"]) for row in rows], [row[3] for row in truth]
+    if has_sun:
+        ours, true = away_from_patch_edges(rows, truth)
+    return seconds, errors_of(ours, true), len(true)
 
 
 def main():

@@ -5,6 +5,7 @@
 
 #include <import/study.hpp>
 
+#include "studytext.hpp"
 #include "textfile.hpp"
 
 namespace clerestory {
@@ -53,6 +54,14 @@ void apply(const MaterialRule& rule, Material& material, std::vector<Diagnosis>&
                              "transmittance = 0 to make it opaque",
                              "material \"" + material.name + "\""});
   }
+  if (rule.glass) {
+    material.glazing = true;
+    material.transmittanceIsAssumed = false;
+    material.transmittance = glm::dvec3(presetTransmittance(*rule.glass));
+    material.reflectance = glm::dvec3(0.0);
+  }
+  material.glass = rule.glass.value_or(material.glass);
+  material.diffusing = rule.diffusing.value_or(material.diffusing);
   material.panes = rule.panes.value_or(material.panes);
   material.exitance_lm_m2 = rule.exitance_lm_m2.value_or(material.exitance_lm_m2);
 }

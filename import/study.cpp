@@ -86,14 +86,20 @@ std::optional<glm::dvec3> statedReflectance(const TomlSection& section) {
 void readMaterials(const TomlSection& file, Study& study) {
   for (const auto& [glob, section] : file.named("materials")) {
     section.allowOnly({"reflectance", "transmittance", "panes", "diffusing", "glass", "exitance"});
-    section.refuse({"glass"});
-    if (section.boolean("diffusing").value_or(false)) {
-      section.fail("diffusing", "diffusing = true is not supported by this version; take it out");
-    }
     MaterialRule rule;
     rule.glob = glob;
     rule.reflectance = statedReflectance(section);
     rule.transmittance = section.color("transmittance", kFraction);
+    rule.diffusing = section.boolean("diffusing");
+    if (const auto preset = section.text("glass")) {
+      rule.glass = glassPreset(*preset);
+      if (!rule.glass) {
+        section.fail("glass", "glass \"" + cleanName(*preset) + "\" is no preset; there is \"cie171-6mm\"");
+      }
+      if (rule.transmittance || section.has("panes")) {
+        section.fail("glass", "states a preset and a transmittance or panes; the preset has its own");
+      }
+    }
     if (const auto panes = section.integer("panes", 1, 10)) {
       rule.panes = static_cast<int>(*panes);
     }
@@ -103,15 +109,44 @@ void readMaterials(const TomlSection& file, Study& study) {
 }
 
 void readSun(const TomlSection& sky, Study& study) {
-  if (const auto sun = sky.section("sun")) {
-    sun->allowOnly({"altitude", "azimuth"});
-    const auto altitude = sun->number("altitude", {0, 90});
-    const auto azimuth = sun->number("azimuth", {-360, 360});
-    if (!altitude || !azimuth) {
-      sun->fail("", "needs altitude and azimuth, in degrees");
-    }
-    study.sky.sun_deg = glm::dvec2(*altitude, *azimuth);
+  study.sky.time = sky.time("time");
+  const auto sun = sky.section("sun");
+  if (!sun) {
+    return;
   }
+  if (study.sky.time) {
+    sky.fail("sun", "states both time and sun; the time gives the sun's place already");
+  }
+  sun->allowOnly({"altitude", "azimuth"});
+  const auto altitude = sun->number("altitude", {0, 90});
+  const auto azimuth = sun->number("azimuth", {-360, 360});
+  if (!altitude || !azimuth) {
+    sun->fail("", "needs altitude and azimuth, in degrees");
+  }
+  study.sky.sun_deg = glm::dvec2(*altitude, *azimuth);
+}
+
+/// How bright the sky and the beam are: illuminances, or irradiances for Perez' model.
+void readBrightness(const TomlSection& section, SkySettings& sky) {
+  const auto direct_W = section.number("direct_normal_w_m2", {0, 1500});
+  const auto diffuse_W = section.number("diffuse_horizontal_w_m2", {0, 1500, false});
+  if (direct_W || diffuse_W) {
+    if (!sky.isPerez) {
+      section.fail("direct_normal_w_m2",
+                   "states irradiances, which only type = \"perez\" reads; state direct_normal_lx and "
+                   "diffuse_horizontal_lx");
+    }
+    if (!direct_W || !diffuse_W || section.has("direct_normal_lx") || section.has("diffuse_horizontal_lx")) {
+      section.fail(
+          "direct_normal_w_m2",
+          "needs both direct_normal_w_m2 and diffuse_horizontal_w_m2, or both in lux, not a mixture");
+    }
+    sky.irradiance = Irradiance{*direct_W, *diffuse_W};
+    return;
+  }
+  sky.diffuseHorizontal_lx =
+      section.number("diffuse_horizontal_lx", {0, 1e6, false}).value_or(sky.diffuseHorizontal_lx);
+  sky.directNormal_lx = section.number("direct_normal_lx", {0, 1e6}).value_or(0.0);
 }
 
 void readSky(const TomlSection& file, Study& study) {
@@ -121,29 +156,29 @@ void readSky(const TomlSection& file, Study& study) {
   }
   section->allowOnly({"type", "diffuse_horizontal_lx", "direct_normal_lx", "time", "sun",
                       "direct_normal_w_m2", "diffuse_horizontal_w_m2"});
-  section->refuse({"time", "direct_normal_w_m2", "diffuse_horizontal_w_m2"});
   const std::string type = section->text("type").value_or("cie-overcast");
-  if (type == "perez") {
-    section->fail("type",
-                  "type = \"perez\" is not supported by this version; use a CIE sky, cie-1 to cie-16");
+  study.sky.isPerez = type == "perez";
+  if (!study.sky.isPerez) {
+    const auto number = skyTypeNumber(type);
+    if (!number) {
+      section->fail("type",
+                    "type \"" + cleanName(type) +
+                        "\" is no sky; use cie-1 to cie-15, cie-overcast, cie-clear, uniform or perez");
+    }
+    study.sky.cieType = *number;
   }
-  const auto number = skyTypeNumber(type);
-  if (!number) {
-    section->fail("type", "type \"" + cleanName(type) +
-                              "\" is no sky; use cie-1 to cie-15, cie-overcast, cie-clear or uniform");
-  }
-  study.sky.cieType = *number;
-  study.sky.diffuseHorizontal_lx =
-      section->number("diffuse_horizontal_lx", {0, 1e6, false}).value_or(study.sky.diffuseHorizontal_lx);
-  if (section->number("direct_normal_lx", {0, 1e6}).value_or(0.0) != 0.0) {
-    section->fail(
-        "direct_normal_lx",
-        "direct_normal_lx: the sun's beam is not supported by this version; state 0 or take it out");
-  }
+  readBrightness(*section, study.sky);
   readSun(*section, study);
-  if (skyNeedsSun(study.sky.cieType) && !study.sky.sun_deg) {
-    section->fail("type",
-                  "type \"" + type + "\" depends on the sun; add sun = { altitude = 40, azimuth = 180 }");
+  const bool isPlaced = study.sky.sun_deg || study.sky.time;
+  if (skyNeedsSun(study.sky) && !isPlaced) {
+    section->fail("type", "type \"" + type +
+                              "\" depends on the sun; add time = 2026-03-21T10:00:00 or "
+                              "sun = { altitude = 40, azimuth = 180 }");
+  }
+  if (study.sky.directNormal_lx > 0.0 && !isPlaced) {
+    section->fail("direct_normal_lx",
+                  "direct_normal_lx needs the sun's place; add time = 2026-03-21T10:00:00 or "
+                  "sun = { altitude = 40, azimuth = 180 }");
   }
 }
 
@@ -155,10 +190,31 @@ void readGround(const TomlSection& file, Study& study) {
   section->allowOnly({"reflectance", "model"});
   study.groundReflectance = section->number("reflectance", kReflectance).value_or(study.groundReflectance);
   const std::string model = section->text("model").value_or("uniform");
-  if (model != "uniform") {
-    section->fail("model", model == "shaded"
-                               ? "model = \"shaded\" is not supported by this version; use \"uniform\""
-                               : "model \"" + cleanName(model) + "\" is not known; use \"uniform\"");
+  if (model != "uniform" && model != "shaded") {
+    section->fail("model", "model \"" + cleanName(model) + "\" is not known; use \"uniform\" or \"shaded\"");
+  }
+  study.groundIsShaded = model == "shaded";
+}
+
+void readOpenings(const TomlSection& file, Study& study) {
+  constexpr double offPlaneMost_m = 0.01;
+  for (const TomlSection& section : file.list("opening")) {
+    section.allowOnly({"polygon"});
+    const std::vector<glm::dvec3> outline = section.outline("polygon");
+    glm::dvec3 normal(0.0);
+    for (std::size_t i = 2; i < outline.size(); ++i)
+      normal += glm::cross(outline[i - 1] - outline[0], outline[i] - outline[0]);
+    const double length = glm::length(normal);
+    if (!(length > 1e-4)) {
+      section.fail("polygon", "polygon has no area");
+    }
+    for (const glm::dvec3& corner : outline) {
+      if (std::abs(glm::dot(corner - outline[0], normal)) > offPlaneMost_m * length) {
+        section.fail("polygon",
+                     "polygon is not flat: a corner lies more than 1 cm off the plane of the others");
+      }
+    }
+    study.openings.push_back(outline);
   }
 }
 
@@ -308,7 +364,7 @@ Study readStudy(const std::filesystem::path& file) {
   const TomlSection root(table, "", name);
   root.allowOnly({"model", "site", "materials", "sky", "ground", "glazing", "opening", "luminaire", "grid",
                   "view", "accuracy", "report"});
-  root.refuse({"luminaire", "opening"});
+  root.refuse({"luminaire"});
   const std::filesystem::path folder = file.parent_path();
   Study study;
   readModelSection(root, folder, study);
@@ -317,6 +373,7 @@ Study readStudy(const std::filesystem::path& file) {
   readSky(root, study);
   readGround(root, study);
   readGlazing(root, study);
+  readOpenings(root, study);
   readGrids(root, folder, study);
   readViews(root, study);
   readAccuracy(root, study);

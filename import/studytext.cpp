@@ -2,6 +2,10 @@
 // Names of skies, accuracies and units, and the sentences for what a study leaves open.
 #include "studytext.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "textfile.hpp"
 #include "units.hpp"
 
@@ -25,21 +29,59 @@ std::optional<int> skyTypeNumber(const std::string& name) {
   return static_cast<int>(*number);
 }
 
-std::string skyTypeName(int cieType) {
-  switch (cieType) {
+std::string skyTypeName(const SkySettings& sky) {
+  if (sky.isPerez) {
+    return "perez";
+  }
+  switch (sky.cieType) {
     case 16:
       return "cie-overcast";
     case 0:
     case 5:
       return "uniform";
     default:
-      return "cie-" + std::to_string(cieType);
+      return "cie-" + std::to_string(sky.cieType);
   }
 }
 
 /// Types 1, 3, 5 of CIE S 011 have no indicatrix; 16 depends on the altitude above the horizon alone.
-bool skyNeedsSun(int cieType) {
-  return cieType != 0 && cieType != 1 && cieType != 3 && cieType != 5 && cieType != 16;
+bool skyNeedsSun(const SkySettings& sky) {
+  const int cieType = sky.cieType;
+  return sky.isPerez || (cieType != 0 && cieType != 1 && cieType != 3 && cieType != 5 && cieType != 16);
+}
+
+std::optional<GlassKind> glassPreset(const std::string& name) {
+  if (name == "cie171-6mm") {
+    return GlassKind::cie171Clear;
+  }
+  return std::nullopt;
+}
+
+std::string glassPresetName(GlassKind kind) {
+  return kind == GlassKind::cie171Clear ? "cie171-6mm" : "";
+}
+
+double presetTransmittance(GlassKind kind) {
+  return kind == GlassKind::cie171Clear ? 0.8788 : 0.0;
+}
+
+std::string clockTimeText(const ClockTime& time) {
+  const auto two = [](int value) { return (value < 10 ? "0" : "") + std::to_string(value); };
+  const auto inHours = [&](double hours) {
+    const auto seconds = std::lround(hours * 3600.0);
+    const int minutes = static_cast<int>(seconds / 60);
+    return std::array{minutes / 60, minutes % 60, static_cast<int>(seconds % 60)};
+  };
+  const auto [hour, minute, second] = inHours(time.hour_h);
+  const std::string year = std::to_string(time.year);
+  std::string text = std::string(4 - std::min<std::size_t>(year.size(), 4), '0') + year + "-" +
+                     two(time.month) + "-" + two(time.day) + "T" + two(hour) + ":" + two(minute) + ":" +
+                     two(second);
+  if (time.zone_h) {
+    const auto offset = inHours(std::abs(*time.zone_h));
+    text += (*time.zone_h < 0.0 ? "-" : "+") + two(offset[0]) + ":" + two(offset[1]);
+  }
+  return text;
 }
 
 bool isUnit(const std::string& text) {
@@ -71,11 +113,12 @@ void assumeWhatIsMissing(Study& study, const Stated& stated) {
   if (!stated.sky) {
     study.assumptions.emplace_back(
         "The sky is the traditional CIE overcast sky with 10,000 lx on the horizontal, without sun.");
-  } else if (study.sky.sun_deg && !skyNeedsSun(study.sky.cieType)) {
-    study.assumptions.emplace_back(
-        "The sun's position does not matter to this sky, and its beam is left out.");
-  } else if (study.sky.sun_deg) {
-    study.assumptions.emplace_back("The sun shapes the sky's luminance; its beam is left out.");
+  } else if ((study.sky.sun_deg || study.sky.time) && study.sky.directNormal_lx <= 0.0 &&
+             !study.sky.irradiance) {
+    study.assumptions.emplace_back(skyNeedsSun(study.sky)
+                                       ? "The sun shapes the sky's luminance; its beam is left out."
+                                       : "The sun's position does not matter to this sky, and its beam is "
+                                         "left out.");
   }
   if (!stated.ground) {
     study.assumptions.emplace_back("The ground reflects 0.2 of the light and is of uniform luminance.");

@@ -11,8 +11,11 @@ namespace clerestory {
 
 /// 1 to 16 for cie-1 … cie-16, cie-overcast (16), cie-clear (12), uniform (5); empty for anything else.
 std::optional<int> skyTypeNumber(const std::string& name);
-std::string skyTypeName(int cieType);
-bool skyNeedsSun(int cieType);  ///< whether the luminance depends on the angle to the sun
+std::string skyTypeName(const SkySettings& sky);
+bool skyNeedsSun(const SkySettings& sky);  ///< whether the luminance depends on the angle to the sun
+std::optional<GlassKind> glassPreset(const std::string& name);
+std::string glassPresetName(GlassKind kind);
+double presetTransmittance(GlassKind kind);  ///< at normal incidence
 bool isUnit(const std::string& text);
 
 /// What a study states itself.

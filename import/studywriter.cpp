@@ -88,6 +88,12 @@ void writeMaterials(const Study& study, Writer& out) {
     if (rule.transmittance) {
       out.line("transmittance", color(*rule.transmittance));
     }
+    if (rule.glass) {
+      out.line("glass", inQuotes(glassPresetName(*rule.glass)));
+    }
+    if (rule.diffusing) {
+      out.line("diffusing", std::string(*rule.diffusing ? "true" : "false"));
+    }
     if (rule.panes) {
       out.line("panes", std::to_string(*rule.panes));
     }
@@ -99,14 +105,24 @@ void writeMaterials(const Study& study, Writer& out) {
 
 void writeSky(const Study& study, Writer& out) {
   out.section("[sky]");
-  out.line("type", inQuotes(skyTypeName(study.sky.cieType)));
-  out.line("diffuse_horizontal_lx", study.sky.diffuseHorizontal_lx);
+  out.line("type", inQuotes(skyTypeName(study.sky)));
+  if (study.sky.irradiance) {
+    out.line("direct_normal_w_m2", study.sky.irradiance->directNormal_W_m2);
+    out.line("diffuse_horizontal_w_m2", study.sky.irradiance->diffuseHorizontal_W_m2);
+  } else {
+    out.line("diffuse_horizontal_lx", study.sky.diffuseHorizontal_lx);
+    out.line("direct_normal_lx", study.sky.directNormal_lx);
+  }
+  if (study.sky.time) {
+    out.line("time", clockTimeText(*study.sky.time));
+  }
   if (study.sky.sun_deg) {
     out.line("sun", "{ altitude = " + numberText(study.sky.sun_deg->x) +
                         ", azimuth = " + numberText(study.sky.sun_deg->y) + " }");
   }
   out.section("[ground]");
   out.line("reflectance", study.groundReflectance);
+  out.line("model", inQuotes(study.groundIsShaded ? "shaded" : "uniform"));
   out.section("[glazing]");
   out.line("dirt", study.dirtFactor);
   out.line("frame", study.frameFactor);
@@ -164,6 +180,12 @@ std::string studyToml(const Study& study) {
   writeSite(study.site, out);
   writeMaterials(study, out);
   writeSky(study, out);
+  for (const std::vector<glm::dvec3>& outline : study.openings) {
+    std::string corners;
+    for (const glm::dvec3& corner : outline) corners += (corners.empty() ? "" : ", ") + list(corner);
+    out.section("[[opening]]");
+    out.line("polygon", "[" + corners + "]");
+  }
   for (const GridSettings& grid : study.grids) {
     writeGrid(grid, out);
   }

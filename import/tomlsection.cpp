@@ -190,6 +190,45 @@ std::vector<glm::dvec2> TomlSection::polygon(const char* key) const {
   return corners;
 }
 
+std::vector<glm::dvec3> TomlSection::outline(const char* key) const {
+  const toml::node* node = table_->get(key);
+  const toml::array* array = node == nullptr ? nullptr : node->as_array();
+  if (array == nullptr || array->size() < 3) {
+    fail(key, std::string(key) + " has to be a list of three or more [x, y, z], in metres");
+  }
+  std::vector<glm::dvec3> corners;
+  for (const toml::node& element : *array) {
+    const std::vector<double> values = numbersOf(element, key, 3, kAnyNumber);
+    corners.emplace_back(values[0], values[1], values[2]);
+  }
+  return corners;
+}
+
+std::optional<ClockTime> TomlSection::time(const char* key) const {
+  const toml::node* node = table_->get(key);
+  if (node == nullptr) {
+    return std::nullopt;
+  }
+  const auto value = node->value<toml::date_time>();
+  if (!value) {
+    failAtNode(*node, std::string(key) + " has to be a date and a time, without quotes: 2026-03-21T10:00:00");
+  }
+  ClockTime time;
+  time.year = value->date.year;
+  time.month = value->date.month;
+  time.day = value->date.day;
+  time.hour_h = value->time.hour + value->time.minute / 60.0 + value->time.second / 3600.0;
+  if (value->offset) {
+    time.zone_h = value->offset->minutes / 60.0;
+  }
+  if (time.year < 1950 || time.year > 2100) {
+    failAtNode(*node, std::string(key) +
+                          " lies outside the years 1950 to 2100, for which the sun's place is "
+                          "known well enough");
+  }
+  return time;
+}
+
 std::vector<std::string> TomlSection::texts(const char* key) const {
   std::vector<std::string> values;
   const toml::node* node = table_->get(key);

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include <import/study.hpp>
+
 namespace clerestory {
 
 /// The numbers that a value may be.
@@ -49,6 +51,8 @@ class TomlSection {
   [[nodiscard]] std::optional<glm::dvec3> point(const char* key) const;                  ///< [x, y, z]
   [[nodiscard]] std::optional<std::array<std::int64_t, 2>> pair(const char* key) const;  ///< whole numbers
   [[nodiscard]] std::vector<glm::dvec2> polygon(const char* key) const;                  ///< [[x, y], …]
+  [[nodiscard]] std::vector<glm::dvec3> outline(const char* key) const;                  ///< [[x, y, z], …]
+  [[nodiscard]] std::optional<ClockTime> time(const char* key) const;  ///< date and time, a zone if stated
   [[nodiscard]] std::vector<std::string> texts(const char* key) const;
 
   [[nodiscard]] std::optional<TomlSection> section(const char* key) const;  ///< a table

@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+#include <solver/daylight.hpp>
+
 #include "escape.hpp"
 #include "folder.hpp"
 #include "metrics.hpp"
@@ -46,11 +48,15 @@ Json inputs(const ReportInput& input) {
 }
 
 Json options(const Study& study) {
-  Json sky = {{"cie_type", study.sky.cieType},
-              {"diffuse_horizontal_lx", number(study.sky.diffuseHorizontal_lx)}};
-  if (study.sky.sun_deg) {
-    sky["sun_altitude_deg"] = number(study.sky.sun_deg->x);
-    sky["sun_azimuth_deg"] = number(study.sky.sun_deg->y);
+  const Daylight daylight = daylightOf(study);
+  Json sky = {{"model", study.sky.isPerez ? "perez" : "cie"},
+              {"cie_type", study.sky.isPerez ? Json(nullptr) : Json(study.sky.cieType)},
+              {"diffuse_horizontal_lx", number(daylight.sky.horizontalIlluminance_lx())},
+              {"direct_normal_lx", number(daylight.directNormal_lx)}};
+  if (study.sky.time) sky["time"] = clockTimeText(*study.sky.time);
+  if (daylight.sun_deg) {
+    sky["sun_altitude_deg"] = number(daylight.sun_deg->x);
+    sky["sun_azimuth_deg"] = number(daylight.sun_deg->y);
   }
   return {{"accuracy", number(study.accuracy)},
           {"time_limit_s", number(study.timeLimit_s)},

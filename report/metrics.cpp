@@ -53,7 +53,8 @@ bool hasDaylightFactor(const SkySettings& sky) {
   // Skies whose luminance does not depend on the sun's azimuth: uniform, CIE types 1, 3 and 5, the
   // traditional one.
   static constexpr std::array<int, 5> types = {0, 1, 3, 5, 16};
-  return sky.diffuseHorizontal_lx > 0.0 && std::find(types.begin(), types.end(), sky.cieType) != types.end();
+  return !sky.isPerez && sky.diffuseHorizontal_lx > 0.0 &&
+         std::find(types.begin(), types.end(), sky.cieType) != types.end();
 }
 
 std::optional<double> daylightFactor_pct(const SkySettings& sky, const SensorValue& sensor) {
@@ -92,7 +93,7 @@ GridMetrics metricsOf(const GridValues& grid, const SkySettings& sky) {
 
 std::optional<En17037> en17037Of(const GridValues& grid, const Study& study) {
   // The norm's method 1 is defined under CIE type 1 or the traditional overcast sky.
-  const bool isOvercast = study.sky.cieType == 1 || study.sky.cieType == 16;
+  const bool isOvercast = !study.sky.isPerez && (study.sky.cieType == 1 || study.sky.cieType == 16);
   if (!isOvercast || !hasDaylightFactor(study.sky) || study.site.externalDiffuse_lx <= 0.0)
     return std::nullopt;
   struct Asked {

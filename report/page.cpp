@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include <solver/daylight.hpp>
+
 #include "escape.hpp"
 #include "json.hpp"
 #include "metrics.hpp"
@@ -29,15 +31,21 @@ struct Page {
 
 std::string skyText(const Study& study) {
   const int type = study.sky.cieType;
-  std::string sky = type == 16               ? "CIE traditional overcast sky (type 16)"
+  const Daylight daylight = daylightOf(study);
+  std::string sky = study.sky.isPerez        ? "Perez all-weather sky"
+                    : type == 16             ? "CIE traditional overcast sky (type 16)"
                     : type == 1              ? "CIE overcast sky (type 1)"
                     : type == 12             ? "CIE clear sky (type 12)"
                     : type == 0 || type == 5 ? "uniform sky (CIE type 5)"
                                              : "CIE sky type " + std::to_string(type);
-  sky += ", " + fixedNumber(study.sky.diffuseHorizontal_lx, 0) + " lx on unobstructed ground";
-  if (study.sky.sun_deg) {
-    sky += ", sun at " + roundedNumber(study.sky.sun_deg->x) + "° altitude and " +
-           roundedNumber(study.sky.sun_deg->y) + "° azimuth";
+  sky += ", " + fixedNumber(daylight.sky.horizontalIlluminance_lx(), 0) + " lx on unobstructed ground";
+  if (daylight.sun_deg) {
+    sky += ", sun at " + fixedNumber(daylight.sun_deg->x, 2) + "° altitude and " +
+           fixedNumber(daylight.sun_deg->y, 2) + "° azimuth";
+    if (study.sky.time) sky += " (" + clockTimeText(*study.sky.time) + ")";
+    sky += daylight.directNormal_lx > 0.0
+               ? ", its beam " + fixedNumber(daylight.directNormal_lx, 0) + " lx square to it"
+               : ", its beam left out";
   }
   return sky;
 }

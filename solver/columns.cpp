@@ -13,7 +13,7 @@ bool isGrey(const glm::dvec3& colour) {
 
 }  // namespace
 
-ColumnLayout columnsFor(const Building& building, bool skyIsBright) {
+ColumnLayout columnsFor(const Building& building, bool skyIsBright, bool sunShines) {
   ColumnLayout layout;
   std::vector<bool> used(building.model.materials.size(), false);
   for (const std::uint32_t material : building.model.pieces.material) used[material] = true;
@@ -27,6 +27,7 @@ ColumnLayout columnsFor(const Building& building, bool skyIsBright) {
   bool seesSky = !building.portals.empty();
   for (const Domain& domain : building.domains) seesSky = seesSky || domain.open;
   layout.sky = (skyIsBright && seesSky) || !layout.electric;
+  layout.sun = sunShines && seesSky;
   return layout;
 }
 

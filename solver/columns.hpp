@@ -11,7 +11,8 @@
 #include <geometry/building.hpp>
 
 /// Every width that a study may be solved in, as instantiate(K); ends a file of templates over K.
-#define CLERESTORY_STUDY_WIDTHS(instantiate) instantiate(1) instantiate(2) instantiate(4) instantiate(8)
+#define CLERESTORY_STUDY_WIDTHS(instantiate) \
+  instantiate(1) instantiate(2) instantiate(4) instantiate(8) instantiate(12)
 
 /// The widths of what shootingHR needs. CLERESTORY_WIDE_COLUMNS, set for a benchmark alone, adds 16 and the
 /// 145 patches of a sky rounded up.
@@ -24,7 +25,7 @@
 
 namespace clerestory {
 
-/// One value in every column. K is 1, 2, 4 or 8; what a study does not use of it stays zero.
+/// One value in every column. K is 1, 2, 4, 8 or 12; what a study does not use of it stays zero.
 template <int K>
 struct Columns {
   std::array<float, K> value{};
@@ -59,18 +60,20 @@ inline double luminanceOf(const glm::dvec3& colour) {
 /// Which column is which.
 struct ColumnLayout {
   bool grey = true;
-  bool sky = false, electric = false;
+  bool sky = false, sun = false, electric = false;
 
   [[nodiscard]] int channels() const { return grey ? 1 : 3; }
-  [[nodiscard]] int used() const { return channels() * (int{sky} + int{electric}); }
+  [[nodiscard]] int used() const { return channels() * (int{sky} + int{sun} + int{electric}); }
   [[nodiscard]] int skyColumn() const { return sky ? 0 : -1; }
-  [[nodiscard]] int electricColumn() const { return electric ? (sky ? channels() : 0) : -1; }
+  [[nodiscard]] int sunColumn() const { return sun ? channels() * int{sky} : -1; }
+  [[nodiscard]] int electricColumn() const { return electric ? channels() * (int{sky} + int{sun}) : -1; }
 
   /// A surface's property (reflectance, transmittance), the same for every kind of light.
   template <int K>
   [[nodiscard]] Columns<K> property(const glm::dvec3& colour) const {
     Columns<K> columns;
     if (sky) place(columns, skyColumn(), colour);
+    if (sun) place(columns, sunColumn(), colour);
     if (electric) place(columns, electricColumn(), colour);
     return columns;
   }
@@ -92,13 +95,15 @@ struct ColumnLayout {
   }
   template <int K>
   [[nodiscard]] glm::dvec3 totalColour(const Columns<K>& columns) const {
-    return colourOf(columns, skyColumn()) + colourOf(columns, electricColumn());
+    return colourOf(columns, skyColumn()) + colourOf(columns, sunColumn()) +
+           colourOf(columns, electricColumn());
   }
   /// What the oracle looks at: the strongest kind of light, by its luminance.
   template <int K>
   [[nodiscard]] float strength(const Columns<K>& columns) const {
-    return static_cast<float>(std::max(luminanceOf(colourOf(columns, skyColumn())),
-                                       luminanceOf(colourOf(columns, electricColumn()))));
+    return static_cast<float>(
+        std::max({luminanceOf(colourOf(columns, skyColumn())), luminanceOf(colourOf(columns, sunColumn())),
+                  luminanceOf(colourOf(columns, electricColumn()))}));
   }
 
  private:
@@ -120,6 +125,6 @@ struct ColumnLayout {
 };
 
 /// The columns that a building's materials and its light need: grey surfaces run one channel.
-ColumnLayout columnsFor(const Building& building, bool skyIsBright);
+ColumnLayout columnsFor(const Building& building, bool skyIsBright, bool sunShines);
 
 }  // namespace clerestory

@@ -5,10 +5,10 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <vector>
 
 #include <geometry/sampling.hpp>
 #include <solver/formfactor.hpp>
@@ -18,7 +18,9 @@
 namespace clerestory {
 namespace {
 
-constexpr float samplesMost = 1024.0F;
+constexpr float samplesMost = 1024.0F;  // at first
+constexpr float samplesMoreOften = 4.0F;
+constexpr int roundsOfMore = 2;
 
 /// A sample's place in its sequence, its weight and what it saw.
 struct Seen {
@@ -28,13 +30,13 @@ struct Seen {
 /// Variance of the weighted mean, from what differs within cells that hold two samples each on average: the
 /// sequence is even, so what differs between cells is no error.
 float varianceWithinCells(std::span<const Seen> samples, float mean, float weights) {
-  constexpr std::size_t sideMost = 16;
+  constexpr std::size_t sideMost = 64;
   struct Cell {
     float count = 0.0F, sum = 0.0F, squares = 0.0F;
   };
-  std::array<Cell, sideMost * sideMost> cells{};
   const auto side = std::clamp(static_cast<std::size_t>(std::sqrt(0.5F * static_cast<float>(samples.size()))),
                                std::size_t{1}, sideMost);
+  std::vector<Cell> cells(side * side);
   for (const Seen& sample : samples) {
     const auto column = static_cast<std::size_t>(sample.u * static_cast<float>(side));
     const auto row = static_cast<std::size_t>(sample.v * static_cast<float>(side));
@@ -69,10 +71,11 @@ DirectLight<K> directFromPolygon(const ColumnLayout& layout, const glm::vec3& re
   const glm::vec3 polygonNormal =
       glm::normalize(glm::cross(polygon[1] - polygon[0], polygon[polygon.size() - 1] - polygon[0]));
   const float height_m = glm::dot(polygon[0] - receiver, polygonNormal);
+  const float most = samplesMost * std::max(1.0F, samples.least / samplesMost);
   const auto count = static_cast<std::uint32_t>(
-      std::clamp(std::ceil(std::max(samples.perFormFactor * whole, samples.least)), 1.0F, samplesMost));
+      std::clamp(std::ceil(std::max(samples.perFormFactor * whole, samples.least)), 1.0F, most));
   const Sequence sequence(key);
-  std::array<Seen, static_cast<std::size_t>(samplesMost)> seen;
+  std::vector<Seen> seen(count);
   Columns<K> sum;
   float weights = 0.0F;
   float strengths = 0.0F;
@@ -93,31 +96,62 @@ DirectLight<K> directFromPolygon(const ColumnLayout& layout, const glm::vec3& re
   if (weights <= 0.0F) return result;
   const float scale = std::numbers::pi_v<float> * whole;
   result.illuminance_lx = (scale / weights) * sum;
-  result.deviation_lx =
-      scale * std::sqrt(varianceWithinCells(std::span(seen).first(count), strengths / weights, weights));
+  result.deviation_lx = scale * std::sqrt(varianceWithinCells(seen, strengths / weights, weights));
   return result;
 }
+
+namespace {
+
+/// Light of all polygons (number, samples -> DirectLight), those that are uneven by more samples.
+template <int K, class Polygon>
+DirectLight<K> sumOf(const ColumnLayout& layout, std::size_t count, DirectSamples samples,
+                     const Polygon& polygon) {
+  std::vector<DirectLight<K>> lights;
+  lights.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) lights.push_back(polygon(i, samples));
+  const auto added = [&] {
+    DirectLight<K> sum;
+    float variance = 0.0F;
+    for (const DirectLight<K>& light : lights) {
+      sum.illuminance_lx += light.illuminance_lx;
+      variance += light.deviation_lx * light.deviation_lx;
+      sum.rays += light.rays;
+    }
+    sum.deviation_lx = std::sqrt(variance);
+    return sum;
+  };
+  DirectLight<K> sum = added();
+  for (int round = 0; round < roundsOfMore; ++round) {
+    const float allowed_lx = samples.deviationMost * layout.strength(sum.illuminance_lx);
+    if (!(sum.deviation_lx > allowed_lx)) break;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto rays = static_cast<float>(lights[i].rays);
+      if (lights[i].deviation_lx > allowed_lx)
+        lights[i] = polygon(i, {samples.perFormFactor, samplesMoreOften * rays, samples.deviationMost});
+    }
+    sum = added();
+  }
+  return sum;
+}
+
+}  // namespace
 
 template <int K>
 DirectLight<K> directFromPortals(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& receiver,
                                  const glm::vec3& normal, DirectSamples samples, std::uint64_t key) {
   const World& world = light.world();
-  DirectLight<K> sum;
-  float variance = 0.0F;
+  std::vector<const Portal*> facing;
   for (const Portal& portal : world.building.portals) {
     if (portal.inside != domain) continue;
     const glm::vec3 inward = world.normalOf(2 * portal.piece + (portal.frontIsInside ? 0U : 1U));
-    const auto polygon = world.polygon(portal.piece);
-    if (glm::dot(receiver - polygon[0], inward) <= 0.0F) continue;
-    const DirectLight<K> own = directFromPolygon<K>(
-        world.layout, receiver, normal, polygon, samples, mixKeys(key, portal.piece),
-        [&](const glm::vec3& onPane) { return light.throughPortal(portal, receiver, onPane); });
-    sum.illuminance_lx += own.illuminance_lx;
-    variance += own.deviation_lx * own.deviation_lx;
-    sum.rays += own.rays;
+    if (glm::dot(receiver - world.polygon(portal.piece)[0], inward) > 0.0F) facing.push_back(&portal);
   }
-  sum.deviation_lx = std::sqrt(variance);
-  return sum;
+  return sumOf<K>(world.layout, facing.size(), samples, [&](std::size_t i, DirectSamples own) {
+    const Portal& portal = *facing[i];
+    return directFromPolygon<K>(
+        world.layout, receiver, normal, world.polygon(portal.piece), own, mixKeys(key, portal.piece),
+        [&](const glm::vec3& onPane) { return light.throughPortal(portal, receiver, onPane); });
+  });
 }
 
 template <int K>
@@ -125,24 +159,19 @@ DirectLight<K> directFromEmitters(const SolvedLight<K>& light, std::int32_t doma
                                   const glm::vec3& normal, DirectSamples samples, std::uint64_t key) {
   const World& world = light.world();
   const Radiosity<K>* radiosity = light.of(domain);
-  DirectLight<K> sum;
-  if (radiosity == nullptr || !world.layout.electric) return sum;
-  float variance = 0.0F;
+  if (radiosity == nullptr || !world.layout.electric) return {};
+  std::vector<std::uint32_t> facing;
   for (const std::uint32_t i : radiosity->emitters) {
-    const Columns<K>& exitance = radiosity->exitance_lm_m2[i];
     const TreeSide& side = radiosity->tree.sides[i];
-    const auto polygon = world.polygon(side.side / 2);
-    if (glm::dot(receiver - polygon[0], side.normal) <= 0.0F) continue;
-    const Columns<K> luminance = std::numbers::inv_pi_v<float> * exitance;
-    const DirectLight<K> own = directFromPolygon<K>(
-        world.layout, receiver, normal, polygon, samples, mixKeys(key, side.side),
-        [&](const glm::vec3& point) { return world.visibility(receiver, point) * luminance; });
-    sum.illuminance_lx += own.illuminance_lx;
-    variance += own.deviation_lx * own.deviation_lx;
-    sum.rays += own.rays;
+    if (glm::dot(receiver - world.polygon(side.side / 2)[0], side.normal) > 0.0F) facing.push_back(i);
   }
-  sum.deviation_lx = std::sqrt(variance);
-  return sum;
+  return sumOf<K>(world.layout, facing.size(), samples, [&](std::size_t i, DirectSamples own) {
+    const std::uint32_t side = radiosity->tree.sides[facing[i]].side;
+    const Columns<K> luminance = std::numbers::inv_pi_v<float> * radiosity->exitance_lm_m2[facing[i]];
+    return directFromPolygon<K>(
+        world.layout, receiver, normal, world.polygon(side / 2), own, mixKeys(key, side),
+        [&](const glm::vec3& point) { return world.visibility(receiver, point) * luminance; });
+  });
 }
 
 #define CLERESTORY_INSTANTIATE(K)                                                                        \

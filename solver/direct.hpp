@@ -3,15 +3,19 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 
 #include "radiosity.hpp"
 
 namespace clerestory {
 
-/// How many samples a luminous polygon gets: `perFormFactor` times its form factor, but `least` in all.
+/// How many samples a luminous polygon gets: `perFormFactor` times its form factor, but `least` in all. Where
+/// the deviation that they tell is above `deviationMost` of the light of all polygons together, it gets four
+/// times as many, and so once more.
 struct DirectSamples {
   float perFormFactor;
   float least;
+  float deviationMost = std::numeric_limits<float>::infinity();
 };
 
 /// Illuminance of a point and how sure it is.

@@ -12,7 +12,7 @@ template <int K>
 SolvedDomain<K> gatheringHR(const SolvedLight<K>& light, std::int32_t domain, Hierarchy treeIn,
                             const TransportSettings& settings) {
   const World& world = light.world();
-  SolvedDomain<K> solved(world, domain, std::move(treeIn));
+  SolvedDomain<K> solved(world, domain, std::move(treeIn), settings);
   const Hierarchy& tree = solved.radiosity.tree;
   LinkCache links(std::numeric_limits<std::uint32_t>::max() * sizeof(CachedLink));
   Transport<K> transport(light, domain, solved.radiosity, settings, links, Links::stored);
@@ -28,8 +28,12 @@ SolvedDomain<K> gatheringHR(const SolvedLight<K>& light, std::int32_t domain, Hi
   std::vector<Columns<K>>& irradiance_lx = solved.radiosity.irradiance_lx;
   std::vector<Columns<K>> entered_lx;
   const Stopwatch firstWatch;
+  const double firstPower_lm = solved.firstPower_lm();
+  const std::size_t nodesAtFirst = tree.size();
   transport.send(std::vector<Columns<K>>(tree.size()), true);
-  solved.balance.emitted_lm = luminanceOf(world.layout.totalColour(emitted_lm + transport.enteredPower_lm()));
+  solved.inheritSunlight(nodesAtFirst);
+  solved.balance.emitted_lm =
+      firstPower_lm + luminanceOf(world.layout.totalColour(transport.enteredPower_lm()));
   for (const Received<K>& received : transport.received()) entered_lx.push_back(received.irradiance_lx);
   transport.handOverLinks(1.0F);
   solved.addStatistics(transport.tally(), 0, world.layout.strength(entering_lm), firstWatch.seconds());
@@ -47,6 +51,7 @@ SolvedDomain<K> gatheringHR(const SolvedLight<K>& light, std::int32_t domain, Hi
     transport.send(sent, false);
     transport.handOverLinks(1.0F);
     inheritValues(tree, nodesBefore, entered_lx);
+    solved.inheritSunlight(nodesBefore);
     irradiance_lx.resize(tree.size());
     for (NodeIndex node = 0; node < tree.size(); ++node)
       irradiance_lx[node] = entered_lx[node] + transport.received()[node].irradiance_lx;
@@ -56,7 +61,7 @@ SolvedDomain<K> gatheringHR(const SolvedLight<K>& light, std::int32_t domain, Hi
     before_lm = power_lm;
   }
   solved.balance.unscaledDefect = transport.unscaledDefect();
-  solved.closeBalance(world);
+  solved.closeBalance();
   solved.diagnoses = transport.diagnoses;
   return solved;
 }

@@ -97,6 +97,20 @@ Glass::Glass(double normalTransmittance, int sheets, double refractiveIndex) : t
   hemispherical_ = cosineMean(table_);
 }
 
+Glass Glass::cie171Clear() {
+  const auto polynomial = [](double c) {
+    return -0.028378 + c * (3.156075 + c * (-3.058376 + c * (-1.428919 + c * (4.014235 - 1.775827 * c))));
+  };
+  Glass glass(polynomial(1.0));
+  for (std::size_t i = 0; i < kTableSize; ++i) {
+    const double cosIncidence = static_cast<double>(i) / static_cast<double>(kTableSize - 1);
+    const auto transmittance = static_cast<float>(std::clamp(polynomial(cosIncidence), 0.0, 1.0));
+    glass.table_[i] = {transmittance, std::min(glass.table_[i].y, 1.0F - transmittance)};
+  }
+  glass.hemispherical_ = cosineMean(glass.table_);
+  return glass;
+}
+
 float Glass::transmittance(float cosIncidence) const {
   return lookUp(table_, cosIncidence).x;
 }

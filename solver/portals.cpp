@@ -33,8 +33,9 @@ float exitanceTowards(const SolvedLight<K>& light, const PortalSender<K>& portal
   const World& world = light.world();
   const glm::vec3 outward = glm::normalize(portal.centre - point);
   const std::uint32_t piece = world.building.portals[portal.portal].piece;
-  const float transmittance =
-      world.portalFactor() * world.glassOf(piece).transmittance(std::abs(glm::dot(outward, portal.inward)));
+  if (world.materialOf(piece).diffusing) return portal.exitance_lm_m2;
+  const float transmittance = world.portalFactor(piece) *
+                              world.glassOf(piece).transmittance(std::abs(glm::dot(outward, portal.inward)));
   const float sky = world.layout.strength(
       transmittance * (world.layout.template property<K>(world.tintOf(piece)) * light.skyLuminance(outward)));
   return std::max(std::numbers::pi_v<float> * sky, 0.5F * portal.exitance_lm_m2);

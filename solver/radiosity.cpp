@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <geometry/sampling.hpp>
+
 namespace clerestory {
 
 template <int K>
@@ -23,15 +25,26 @@ Columns<K> SolvedLight<K>::exitance(const RayScene::Hit& hit, const glm::vec3& p
   const Radiosity<K>& own = *of(world_.building.sideDomain[side]);
   const NodeIndex leaf = own.tree.leafAt(rootOfSide_[side], point);
   const std::uint32_t treeSide = own.tree.treeSide[leaf];
-  Columns<K> result = own.reflectance[treeSide] * own.irradianceAt(leaf, point);
+  Columns<K> irradiance_lx = own.irradianceAt(leaf, point);
+  if (!own.sunlight.empty() && own.sunlight.mayReach[leaf] != 0) {
+    const glm::vec3& normal = own.tree.normal(leaf);
+    irradiance_lx += world_.layout.template light<K>(
+        world_.layout.sunColumn(), glm::dvec3(sunlightAt(world_, point + rayOffset_m * normal, normal)));
+  }
+  Columns<K> result = own.reflectance[treeSide] * irradiance_lx;
   if (withEmission) result += own.exitance_lm_m2[treeSide];
   return result;
 }
 
 template <int K>
 Columns<K> SolvedLight<K>::skyLuminance(const glm::vec3& direction) const {
-  return world_.layout.template light<K>(
+  Columns<K> luminance = world_.layout.template light<K>(
       world_.layout.skyColumn(), glm::dvec3(static_cast<double>(world_.sky.luminance_cd_m2(direction))));
+  if (world_.sun && direction.z < 0.0F) {
+    luminance +=
+        world_.layout.template light<K>(world_.layout.sunColumn(), glm::dvec3(world_.sun->ground_cd_m2));
+  }
+  return luminance;
 }
 
 template <int K>
@@ -53,11 +66,41 @@ template <int K>
 Columns<K> SolvedLight<K>::behindPortal(const Portal& portal, const glm::vec3& receiver,
                                         const glm::vec3& onPane) const {
   const glm::vec3 direction = glm::normalize(onPane - receiver);
-  const float cosine = std::abs(glm::dot(direction, world_.normalOf(2 * portal.piece)));
-  const float transmittance = world_.portalFactor() * world_.glassOf(portal.piece).transmittance(cosine) *
-                              world_.innerTransmittance(receiver, onPane);
-  return transmittance * (world_.layout.template property<K>(world_.tintOf(portal.piece)) *
-                          outsideLuminance(onPane, direction));
+  return world_.innerTransmittance(receiver, onPane) * paneLuminance(portal.piece, onPane, direction);
+}
+
+template <int K>
+Columns<K> SolvedLight<K>::paneLuminance(std::uint32_t piece, const glm::vec3& onPane,
+                                         const glm::vec3& direction) const {
+  if (world_.materialOf(piece).diffusing) return diffused_cd_m2_[piece];
+  const float cosine = std::abs(glm::dot(direction, world_.normalOf(2 * piece)));
+  return world_.portalFactor(piece) * world_.glassOf(piece).transmittance(cosine) *
+         (world_.layout.template property<K>(world_.tintOf(piece)) * outsideLuminance(onPane, direction));
+}
+
+// What passes is scattered evenly over directions and over the pane: a mean over both.
+template <int K>
+void SolvedLight<K>::lightDiffusingPanes() {
+  constexpr std::uint32_t rays = 4096;
+  for (const Portal& portal : world_.building.portals) {
+    if (!world_.materialOf(portal.piece).diffusing) continue;
+    const Glass& glass = world_.glassOf(portal.piece);
+    const glm::vec3 outward = world_.normalOf(2 * portal.piece + (portal.frontIsInside ? 1U : 0U));
+    const Sequence sequence(mixKeys(0xd1f, portal.piece));
+    Columns<K> sum;
+    for (std::uint32_t i = 0; i < rays; ++i) {
+      const glm::vec3 onPane =
+          pointOnPolygon<glm::vec3>(world_.polygon(portal.piece), sequence(i, 0), sequence(i, 1));
+      const glm::vec3 direction = cosineDirection(outward, sequence(i, 2), sequence(i, 3));
+      sum += glass.transmittance(glm::dot(direction, outward)) * outsideLuminance(onPane, direction);
+      if (!world_.sun) continue;
+      const glm::vec3 beam_lx = sunlightAt(world_, onPane + rayOffset_m * outward, outward);
+      sum += std::numbers::inv_pi_v<float> * glass.transmittance(glm::dot(world_.sun->towards, outward)) *
+             world_.layout.template light<K>(world_.layout.sunColumn(), glm::dvec3(beam_lx));
+    }
+    diffused_cd_m2_[portal.piece] = world_.portalFactor(portal.piece) / static_cast<float>(rays) *
+                                    (world_.layout.template property<K>(world_.tintOf(portal.piece)) * sum);
+  }
 }
 
 #define CLERESTORY_INSTANTIATE(K) template class SolvedLight<K>;

@@ -10,6 +10,7 @@
 
 #include "columns.hpp"
 #include "hierarchy.hpp"
+#include "sunlight.hpp"
 #include "world.hpp"
 
 namespace clerestory {
@@ -32,11 +33,12 @@ struct Plane {
 template <int K>
 struct Radiosity {
   Hierarchy tree;
-  std::vector<Columns<K>> irradiance_lx;   ///< #nodes; leaves hold all light received
+  std::vector<Columns<K>> irradiance_lx;   ///< #nodes; leaves hold all light received but the sun's beam
   std::vector<Columns<K>> reflectance;     ///< #sides of the tree
   std::vector<Columns<K>> exitance_lm_m2;  ///< #sides of the tree: own emission
   std::vector<std::uint32_t> emitters;     ///< sides of the tree that have some
-  std::vector<Plane<K>> planes;            ///< #nodes, or empty before `reconstruct`
+  std::vector<Plane<K>> planes{};          ///< #nodes, or empty before `reconstruct`
+  Sunlight sunlight{};                     ///< the beam; empty without sun
 
   /// Irradiance of a point of a leaf: of its plane if there is one, else its mean.
   [[nodiscard]] Columns<K> irradianceAt(NodeIndex leaf, const glm::vec3& point) const {
@@ -48,6 +50,11 @@ struct Radiosity {
   [[nodiscard]] Columns<K> reflected(NodeIndex leaf) const {
     return reflectance[tree.treeSide[leaf]] * irradiance_lx[leaf];
   }
+  /// Mean illuminance of a leaf by the sun's beam.
+  [[nodiscard]] Columns<K> sunlightOf(const ColumnLayout& layout, NodeIndex leaf) const {
+    if (sunlight.empty()) return {};
+    return layout.template light<K>(layout.sunColumn(), glm::dvec3(sunlight.illuminance_lx[leaf]));
+  }
 };
 
 /// All solved domains and the way from a side to its tree; lookups for rays.
@@ -57,6 +64,7 @@ class SolvedLight {
   explicit SolvedLight(const World& world)
       : world_(world),
         rootOfSide_(2 * world.pieces().size(), noNode),
+        diffused_cd_m2_(world.pieces().size()),
         domains_(world.building.domains.size()) {}
 
   void add(std::int32_t domain, Radiosity<K> radiosity);
@@ -75,6 +83,12 @@ class SolvedLight {
   /// Luminance seen outdoors along a ray that starts outside or on the outer face of a pane. [cd/m²]
   [[nodiscard]] Columns<K> outsideLuminance(const glm::vec3& from, const glm::vec3& direction) const;
 
+  /// Finds how brightly scattering panes shine inwards; to be called when the outside is solved.
+  void lightDiffusingPanes();
+  /// Luminance that a pane shows inside at a point of it, to one who looks along `direction`. [cd/m²]
+  [[nodiscard]] Columns<K> paneLuminance(std::uint32_t piece, const glm::vec3& onPane,
+                                         const glm::vec3& direction) const;
+
   /// Luminance that a portal's point shows towards `receiver`, after the pane's transmittance. [cd/m²]
   [[nodiscard]] Columns<K> behindPortal(const Portal& portal, const glm::vec3& receiver,
                                         const glm::vec3& onPane) const;
@@ -90,6 +104,7 @@ class SolvedLight {
  private:
   const World& world_;
   std::vector<NodeIndex> rootOfSide_;
+  std::vector<Columns<K>> diffused_cd_m2_;  // #pieces, of scattering panes
   std::vector<std::optional<Radiosity<K>>> domains_;
 };
 

@@ -203,5 +203,6 @@ template void reconstruct<1>(const World&, float, Radiosity<1>&);
 template void reconstruct<2>(const World&, float, Radiosity<2>&);
 template void reconstruct<4>(const World&, float, Radiosity<4>&);
 template void reconstruct<8>(const World&, float, Radiosity<8>&);
+template void reconstruct<12>(const World&, float, Radiosity<12>&);
 
 }  // namespace clerestory

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int mirrorDepth = 4;  // panes that a ray is followed by reflection
 constexpr std::uint32_t batches = 16;
+constexpr std::uint32_t raysOfDisc = 32;  // to the sun's disc, from a sensor
 
 /// Standard deviation of the mean of what batches sum up, of `counts` values each.
 float deviationOfMean(const std::array<float, batches>& sums, const std::array<float, batches>& counts) {
@@ -60,10 +61,9 @@ std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32
     const Glass& glass = world.glassOf(hit.piece);
     const glm::vec3 normal = world.normalOf(hit.side());
     const float cosine = std::abs(glm::dot(direction, normal));
-    if (withDirect) {
-      const Columns<K> tint = world.layout.template property<K>(world.tintOf(hit.piece));
-      sum += weight * world.portalFactor() * glass.transmittance(cosine) *
-             (tint * light.outsideLuminance(point, direction));
+    if (withDirect) sum += weight * light.paneLuminance(hit.piece, point, direction);
+    if (world.materialOf(hit.piece).diffusing) {
+      return sum + weight * std::numbers::inv_pi_v<float> * light.exitance(hit, point, false);
     }
     weight *= glass.reflectance(cosine);
     direction = glm::reflect(direction, normal);
@@ -144,18 +144,21 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
   values.sensors.resize(grid.points.size());
   forEachIndex(grid.points.size(), 4, [&](std::size_t i) {
     const glm::vec3 point = world.local(grid.points[i]);
+    const glm::vec3 normal(grid.normals[i]);
     const std::int32_t domain = grid.room >= 0
                                     ? world.building.rooms[static_cast<std::size_t>(grid.room)].domain
                                     : domainAt(world, point);
     SensorValue& value = values.sensors[i];
     if (domain < 0 || light.of(domain) == nullptr) return;
-    const Gathered<K> arriving =
-        gather(light, domain, point, glm::vec3(grid.normals[i]), settings, mixKeys(0x5e5, i));
+    const Gathered<K> arriving = gather(light, domain, point, normal, settings, mixKeys(0x5e5, i));
     const ColumnLayout& layout = world.layout;
-    const Columns<K> all = arriving.direct_lx + arriving.reflected_lx;
-    value.direct_lx = luminanceOf(layout.totalColour(arriving.direct_lx));
+    const Columns<K> sun = layout.template light<K>(
+        layout.sunColumn(), glm::dvec3(sunlightByDisc(world, point, normal, raysOfDisc, mixKeys(0x5e6, i))));
+    const Columns<K> all = arriving.direct_lx + sun + arriving.reflected_lx;
+    value.direct_lx = luminanceOf(layout.totalColour(arriving.direct_lx + sun));
     value.reflected_lx = luminanceOf(layout.totalColour(arriving.reflected_lx));
     value.sky_lx = luminanceOf(layout.colourOf(all, layout.skyColumn()));
+    value.sun_lx = luminanceOf(layout.colourOf(all, layout.sunColumn()));
     value.electric_lx = luminanceOf(layout.colourOf(all, layout.electricColumn()));
     value.illuminance_lx = value.direct_lx + value.reflected_lx;
     value.error_lx =

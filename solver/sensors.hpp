@@ -24,7 +24,8 @@ struct Gathered {
   float directDeviation_lx = 0.0F, reflectedDeviation_lx = 0.0F;
 };
 
-/// Light arriving at `point` (local coordinates) with unit `normal` in the air of `domain`.
+/// Light arriving at `point` (local coordinates) with unit `normal` in the air of `domain`, without the sun's
+/// beam: that is as sharp as rays to its disc make it (sunlightByDisc).
 template <int K>
 Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& point,
                    const glm::vec3& normal, const GatherSettings& settings, std::uint64_t key);

@@ -37,18 +37,19 @@ template <int K>
 SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hierarchy treeIn,
                            const TransportSettings& settings, LinkCache& cache) {
   const World& world = light.world();
-  SolvedDomain<K> solved(world, domain, std::move(treeIn));
+  SolvedDomain<K> solved(world, domain, std::move(treeIn), settings);
   const Hierarchy& tree = solved.radiosity.tree;
   Transport<K> transport(light, domain, solved.radiosity, settings, cache, Links::madeAnew);
 
-  // Line 2 of the listing: what is unshot at first is the emission. (Its line 1 should read B <- E; here the
+  // Line 2 of the listing: what is unshot at first is the emission, and sunlight as it is reflected where it
+  // falls. (Its line 1 should read B <- E; here the
   // sum holds irradiance, and emission is added where exitance is asked for.)
   std::vector<Columns<K>>& sum = solved.radiosity.irradiance_lx;
   std::vector<Columns<K>> unshot = solved.emission();
   Columns<K> unshotPower_lm = transport.powerOf(unshot);
   const Columns<K> entering_lm = transport.enteringPower_lm();
   float before_lm = world.layout.strength(unshotPower_lm) + world.layout.strength(entering_lm);
-  const Columns<K> emitted_lm = unshotPower_lm;
+  const double first_lm = solved.firstPower_lm();
   if (!(before_lm > 0.0F)) return solved;
   transport.setFirstLight(before_lm);
   solved.threshold_lm = transport.threshold_lm();
@@ -60,8 +61,9 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
     transport.send(unshot, step == 1);
     if (step == 1)
       solved.balance.emitted_lm =
-          luminanceOf(world.layout.totalColour(emitted_lm + transport.enteredPower_lm()));
+          first_lm + luminanceOf(world.layout.totalColour(transport.enteredPower_lm()));
     inheritValues(tree, nodesBefore, sum);
+    solved.inheritSunlight(nodesBefore);
     unshot.resize(tree.size());
     for (NodeIndex node = 0; node < tree.size(); ++node) {
       if (!tree.isLeaf(node)) continue;
@@ -82,7 +84,7 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
   finishWithRootLink(world.building.domains[static_cast<std::size_t>(domain)], unshotPower_lm, solved);
   cache.replace({}, 0, 1.0F);
   solved.balance.unscaledDefect = transport.unscaledDefect();
-  solved.closeBalance(world);
+  solved.closeBalance();
   solved.diagnoses = transport.diagnoses;
   return solved;
 }

@@ -43,14 +43,18 @@ constexpr std::array<Parameters, 15> kTypes = {{{4.0, -0.70, 0.0, -1.0, 0.0},
                                                 {-1.0, -0.15, 16.0, -3.0, 0.30},
                                                 {-1.0, -0.15, 24.0, -2.8, 0.15}}};
 
-double gradation(const Parameters& sky, double cosZenith) {
-  return 1.0 + sky.a * std::exp(sky.b / cosZenith);
+SkyShape shapeOf(const Parameters& sky) {
+  if (sky.c == 0.0) return {sky.a, sky.b, 1.0, 0.0, sky.d, 0.0};
+  return {sky.a, sky.b, 1.0 - sky.c * std::exp(sky.d * pi / 2.0), sky.c, sky.d, sky.e};
 }
 
-double indicatrix(const Parameters& sky, double cosToSun) {
-  if (sky.c == 0.0) return 1.0;  // and e with it
+double gradation(const SkyShape& sky, double cosZenith) {
+  return 1.0 + sky.a * std::exp(sky.b / std::max(cosZenith, 1e-6));
+}
+
+double indicatrix(const SkyShape& sky, double cosToSun) {
   const double angle = std::acos(std::clamp(cosToSun, -1.0, 1.0));
-  return 1.0 + sky.c * (std::exp(sky.d * angle) - std::exp(sky.d * pi / 2.0)) + sky.e * cosToSun * cosToSun;
+  return sky.base + sky.c * std::exp(sky.d * angle) + sky.e * cosToSun * cosToSun;
 }
 
 /// Abscissae and weights of the Gauss-Legendre rule on [0, 1], by Newton's method on the polynomial.
@@ -76,7 +80,7 @@ std::array<std::pair<double, double>, N> gaussLegendre() {
 
 /// Integral of gradation times indicatrix times cosine over the hemisphere: in panels that end at the sun's
 /// zenith angle and azimuth, where the indicatrix has its cusp.
-double horizontalPerScale(const Parameters& sky, double sunZenith) {
+double horizontalPerScale(const SkyShape& sky, double sunZenith) {
   static const auto rule = gaussLegendre<96>();
   double sum = 0.0;
   const double split = std::min(sunZenith, pi / 2.0);
@@ -86,11 +90,19 @@ double horizontalPerScale(const Parameters& sky, double sunZenith) {
                    sinZenith = std::sin(zenith);
       double ring = 0.0;
       for (const auto& [y, ringWeight] : rule)
-        ring += ringWeight * indicatrix(sky, std::cos(sunZenith) * cosZenith +
-                                                 std::sin(sunZenith) * sinZenith * std::cos(pi * y));
-      sum += weight * (to - from) * cosZenith * sinZenith * gradation(sky, cosZenith) * ring;
+        ring += ringWeight * std::max(indicatrix(sky, std::cos(sunZenith) * cosZenith +
+                                                          std::sin(sunZenith) * sinZenith * std::cos(pi * y)),
+                                      0.0);
+      sum += weight * (to - from) * cosZenith * sinZenith * std::max(gradation(sky, cosZenith), 0.0) * ring;
     }
   return 2.0 * pi * sum;
+}
+
+/// Of type 16, which has a formula of its own, the uniform sky's.
+SkyShape shapeOfType(int cieType) {
+  if (cieType < 1 || cieType > kTraditionalOvercast)
+    throw std::invalid_argument("CIE sky type " + std::to_string(cieType) + " is not one of 1 to 16");
+  return shapeOf(kTypes[cieType == kTraditionalOvercast ? 4 : static_cast<std::size_t>(cieType - 1)]);
 }
 
 }  // namespace
@@ -100,32 +112,31 @@ glm::dvec3 directionFromAngles(double altitude_deg, double azimuth_deg, double n
   return {std::cos(altitude) * std::sin(bearing), std::cos(altitude) * std::cos(bearing), std::sin(altitude)};
 }
 
-Sky::Sky(int cieType, double diffuseHorizontal_lx, glm::dvec3 towardsSun, double groundReflectance,
-         double extraGroundIlluminance_lx)
+Sky::Sky(const SkyShape& shape, double diffuseHorizontal_lx, glm::dvec3 towardsSun, double groundReflectance)
     : horizontal_lx_(diffuseHorizontal_lx),
-      ground_cd_m2_(groundReflectance * (diffuseHorizontal_lx + extraGroundIlluminance_lx) / pi),
+      zenith_cd_m2_(0.0),
+      ground_cd_m2_(groundReflectance * diffuseHorizontal_lx / pi),
       towardsSun_(towardsSun) {
-  if (cieType < 1 || cieType > kTraditionalOvercast)
-    throw std::invalid_argument("CIE sky type " + std::to_string(cieType) + " is not one of 1 to 16");
-  if (cieType == kTraditionalOvercast) {  // (1 + 2 z) / 3, whose integral is 7 pi / 9
-    linear_ = true;
-    a_ = 2.0F;
-    zenith_cd_m2_ = horizontal_lx_ * (9.0 / (7.0 * pi));
-    scale_cd_m2_ = static_cast<float>(zenith_cd_m2_ / 3.0);
-    return;
-  }
-  const Parameters& sky = kTypes[static_cast<std::size_t>(cieType - 1)];
   const double sunZenith = std::acos(std::clamp(towardsSun.z, -1.0, 1.0));
-  const double scale = horizontal_lx_ / horizontalPerScale(sky, sunZenith);
-  sunny_ = sky.c != 0.0;
-  a_ = static_cast<float>(sky.a);
-  b_ = static_cast<float>(sky.b);
-  base_ = static_cast<float>(1.0 - sky.c * std::exp(sky.d * pi / 2.0));
-  c_ = static_cast<float>(sky.c);
-  d_ = static_cast<float>(sky.d);
-  e_ = static_cast<float>(sky.e);
-  zenith_cd_m2_ = scale * gradation(sky, 1.0) * indicatrix(sky, towardsSun.z);
+  const double scale = horizontal_lx_ / horizontalPerScale(shape, sunZenith);
+  sunny_ = shape.c != 0.0 || shape.e != 0.0;
+  a_ = static_cast<float>(shape.a);
+  b_ = static_cast<float>(shape.b);
+  base_ = static_cast<float>(shape.base);
+  c_ = static_cast<float>(shape.c);
+  d_ = static_cast<float>(shape.d);
+  e_ = static_cast<float>(shape.e);
+  zenith_cd_m2_ = scale * gradation(shape, 1.0) * indicatrix(shape, towardsSun.z);
   scale_cd_m2_ = static_cast<float>(scale);
+}
+
+Sky::Sky(int cieType, double diffuseHorizontal_lx, glm::dvec3 towardsSun, double groundReflectance)
+    : Sky(shapeOfType(cieType), diffuseHorizontal_lx, towardsSun, groundReflectance) {
+  if (cieType != kTraditionalOvercast) return;  // (1 + 2 z) / 3, whose integral is 7 pi / 9
+  linear_ = true;
+  a_ = 2.0F;
+  zenith_cd_m2_ = horizontal_lx_ * (9.0 / (7.0 * pi));
+  scale_cd_m2_ = static_cast<float>(zenith_cd_m2_ / 3.0);
 }
 
 float Sky::luminance_cd_m2(glm::vec3 direction) const {
@@ -133,10 +144,10 @@ float Sky::luminance_cd_m2(glm::vec3 direction) const {
   if (linear_) return scale_cd_m2_ * (1.0F + a_ * direction.z);
   float relative = 1.0F;
   if (a_ != 0.0F) relative += a_ * std::exp(b_ / std::max(direction.z, 1e-6F));
-  if (!sunny_) return scale_cd_m2_ * relative;
+  if (!sunny_) return scale_cd_m2_ * std::max(relative, 0.0F);
   const float cosToSun = std::clamp(glm::dot(direction, towardsSun_), -1.0F, 1.0F);
-  return scale_cd_m2_ * relative *
-         (base_ + c_ * std::exp(d_ * std::acos(cosToSun)) + e_ * cosToSun * cosToSun);
+  const float toSun = base_ + c_ * std::exp(d_ * std::acos(cosToSun)) + e_ * cosToSun * cosToSun;
+  return scale_cd_m2_ * std::max(relative, 0.0F) * std::max(toSun, 0.0F);
 }
 
 }  // namespace clerestory

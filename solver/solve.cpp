@@ -30,7 +30,8 @@ Tuning tuningFor(double accuracy, const SolveOptions& options) {
   Tuning tuning;
   tuning.transport = transportFor(accuracy);
   tuning.transport.memoryBytes = options.memoryBytes;
-  tuning.sensors.direct = {static_cast<float>(256.0 * finer), static_cast<float>(128.0 * finer)};
+  tuning.sensors.direct = {static_cast<float>(256.0 * finer), static_cast<float>(128.0 * finer),
+                           static_cast<float>(0.35 * accuracy)};
   tuning.sensors.rays =
       static_cast<std::uint32_t>(std::clamp(1024.0 * finer * std::sqrt(finer), 256.0, 65536.0));
   tuning.views = {{96.0F, 2.0F}, 64};
@@ -68,10 +69,13 @@ void solveDomains(const World& world, const Study& study, const SolveOptions& op
                   SolvedLight<K>& light, Solution& solution) {
   const auto count = static_cast<std::int32_t>(world.building.domains.size());
   const std::set<std::int32_t> asked = askedDomains(world, study);
+  bool arePanesLit = false;
   for (std::int32_t domain = 0; domain < count; ++domain) {
     const Domain& air = world.building.domains[static_cast<std::size_t>(domain)];
     const std::vector<std::uint32_t> sides = sidesOf(world.building, domain);
     if (!air.lit || sides.empty() || !asked.contains(domain)) continue;
+    if (!air.open && !arePanesLit) light.lightDiffusingPanes();
+    arePanesLit = arePanesLit || !air.open;
     report(options, "light", static_cast<double>(domain) / count);
     Hierarchy tree = air.open ? outsideTree(world, study, domain, sides)
                               : Hierarchy(world.pieces(), sides, world.rays.origin(), {});
@@ -125,8 +129,10 @@ Solution solve(const Building& building, const Study& study, const SolveOptions&
       solution = solveColumns<2>(world, study, options);
     } else if (used <= 4) {
       solution = solveColumns<4>(world, study, options);
-    } else {
+    } else if (used <= 8) {
       solution = solveColumns<8>(world, study, options);
+    } else {
+      solution = solveColumns<12>(world, study, options);
     }
   });
   return solution;

@@ -7,8 +7,11 @@
 namespace clerestory {
 
 template <int K>
-SolvedDomain<K>::SolvedDomain(const World& world, std::int32_t domainIn, Hierarchy tree)
-    : domain(domainIn), radiosity{std::move(tree), {}, {}, {}, {}, {}} {
+SolvedDomain<K>::SolvedDomain(const World& world, std::int32_t domainIn, Hierarchy tree,
+                              const TransportSettings& settings)
+    : domain(domainIn), radiosity{std::move(tree), {}, {}, {}, {}, {}, {}}, world_(world) {
+  radiosity.sunlight = sunlightOn(world, domain, radiosity.tree, settings.epsilon, settings.elementMin_m,
+                                  settings.memoryBytes);
   radiosity.irradiance_lx.resize(radiosity.tree.size());
   for (const TreeSide& side : radiosity.tree.sides) {
     const Material& material = world.materialOf(side.side / 2);
@@ -27,9 +30,32 @@ std::vector<Columns<K>> SolvedDomain<K>::emission() const {
   const Hierarchy& tree = radiosity.tree;
   std::vector<Columns<K>> emission(tree.size());
   for (NodeIndex node = 0; node < tree.size(); ++node) {
-    if (!tree.isCluster(node)) emission[node] = radiosity.exitance_lm_m2[tree.treeSide[node]];
+    if (tree.isCluster(node)) continue;
+    const std::uint32_t side = tree.treeSide[node];
+    emission[node] = radiosity.exitance_lm_m2[side] +
+                     radiosity.reflectance[side] * radiosity.sunlightOf(world_.layout, node);
   }
   return emission;
+}
+
+template <int K>
+double SolvedDomain<K>::firstPower_lm() const {
+  const Hierarchy& tree = radiosity.tree;
+  double power_lm = 0.0;
+  for (NodeIndex node = 0; node < tree.size(); ++node) {
+    if (!tree.isLeaf(node) || tree.isCluster(node)) continue;
+    const Columns<K> light =
+        radiosity.exitance_lm_m2[tree.treeSide[node]] + radiosity.sunlightOf(world_.layout, node);
+    power_lm += static_cast<double>(tree.area_m2[node]) * luminanceOf(world_.layout.totalColour(light));
+  }
+  return power_lm;
+}
+
+template <int K>
+void SolvedDomain<K>::inheritSunlight(std::size_t before) {
+  if (radiosity.sunlight.empty()) return;
+  inheritValues(radiosity.tree, before, radiosity.sunlight.illuminance_lx);
+  inheritValues(radiosity.tree, before, radiosity.sunlight.mayReach);
 }
 
 template <int K>
@@ -62,15 +88,16 @@ void SolvedDomain<K>::addStatistics(const Tally& tally, std::size_t cached, floa
 }
 
 template <int K>
-void SolvedDomain<K>::closeBalance(const World& world) {
+void SolvedDomain<K>::closeBalance() {
   const Hierarchy& tree = radiosity.tree;
   for (NodeIndex node = 0; node < tree.size(); ++node) {
     if (!tree.isLeaf(node)) continue;
-    const Columns<K>& irradiance_lx = radiosity.irradiance_lx[node];
+    const Columns<K> irradiance_lx =
+        radiosity.irradiance_lx[node] + radiosity.sunlightOf(world_.layout, node);
     const Columns<K> absorbed = irradiance_lx - reflected(node, irradiance_lx);
     const double power_lm =
-        static_cast<double>(tree.area_m2[node]) * luminanceOf(world.layout.totalColour(absorbed));
-    const bool isGlass = world.materialOf(tree.sides[tree.treeSide[node]].side / 2).glazing;
+        static_cast<double>(tree.area_m2[node]) * luminanceOf(world_.layout.totalColour(absorbed));
+    const bool isGlass = world_.materialOf(tree.sides[tree.treeSide[node]].side / 2).glazing;
     (isGlass ? balance.escaped_lm : balance.absorbed_lm) += power_lm;
   }
 }

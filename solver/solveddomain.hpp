@@ -21,11 +21,17 @@ struct SolvedDomain {
   float threshold_lm = 0.0F;  ///< weighted power that one interaction was allowed to err by
   std::vector<Diagnosis> diagnoses;
 
-  /// Dark as yet: what its sides reflect and emit is known.
-  SolvedDomain(const World& world, std::int32_t domain, Hierarchy tree);
+  /// Dark as yet but for the sun's beam: what its sides reflect and emit is known.
+  SolvedDomain(const World& world, std::int32_t domain, Hierarchy tree,
+               const TransportSettings& settings = {});
 
-  /// Emission of leaves. #nodes
+  /// What leaves send before anything is exchanged: their emission, and the sun's beam as they reflect it.
+  /// #nodes
   [[nodiscard]] std::vector<Columns<K>> emission() const;
+  /// Power of the emission and of the beam that is not reflected. [lm]
+  [[nodiscard]] double firstPower_lm() const;
+  /// Gives nodes made since the tree had `before` of them the sunlight of their parents.
+  void inheritSunlight(std::size_t before);
   /// What leaves send of the irradiances that they hold. #nodes
   [[nodiscard]] Columns<K> reflected(NodeIndex leaf, const Columns<K>& irradiance_lx) const {
     return radiosity.reflectance[radiosity.tree.treeSide[leaf]] * irradiance_lx;
@@ -35,7 +41,10 @@ struct SolvedDomain {
 
   void addStatistics(const Tally& tally, std::size_t cached, float unshotPower_lm, double seconds);
   /// Adds up what was absorbed and what left through glass.
-  void closeBalance(const World& world);
+  void closeBalance();
+
+ private:
+  const World& world_;
 };
 
 /// Gives nodes made since the tree had `before` of them the values of their parents.

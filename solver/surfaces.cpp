@@ -36,7 +36,9 @@ std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double so
       const std::uint32_t piece = tree.sides[tree.treeSide[node]].side / 2;
       SurfaceValue& row = rows[{order, world.pieces().surface[piece]}];
       const auto area_m2 = static_cast<double>(tree.area_m2[node]);
-      const double illuminance_lx = luminanceOf(world.layout.totalColour(radiosity->irradiance_lx[node]));
+      const Columns<K> irradiance_lx =
+          radiosity->irradiance_lx[node] + radiosity->sunlightOf(world.layout, node);
+      const double illuminance_lx = luminanceOf(world.layout.totalColour(irradiance_lx));
       if (row.elements == 0) {
         row.surface = world.pieces().surface[piece];
         row.room = room;
@@ -48,7 +50,7 @@ std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double so
       row.illuminanceMin_lx = std::min(row.illuminanceMin_lx, illuminance_lx);
       row.illuminanceMax_lx = std::max(row.illuminanceMax_lx, illuminance_lx);
       row.exitanceMean_lm_m2 +=
-          area_m2 * world.layout.totalColour(radiosity->reflected(node) +
+          area_m2 * world.layout.totalColour(radiosity->reflectance[tree.treeSide[node]] * irradiance_lx +
                                              radiosity->exitance_lm_m2[tree.treeSide[node]]);
     }
   }

@@ -207,6 +207,9 @@ class Picture {
           gather(light_, domain, point + rayOffset_m * normal, normal, spotSettings_, key);
       irradiance = arriving.direct_lx + arriving.reflected_lx;
     }
+    *irradiance += world_.layout.template light<K>(
+        world_.layout.sunColumn(),
+        glm::dvec3(sunlightByDisc(world_, point + rayOffset_m * normal, normal, 1, key)));
     const Columns<K> exitance =
         world_.layout.template property<K>(world_.reflectanceOf(hit.piece)) * *irradiance +
         world_.layout.template light<K>(world_.layout.electricColumn(),

@@ -5,27 +5,34 @@
 #include <glm/geometric.hpp>
 
 #include <cmath>
+#include <numbers>
 
 namespace clerestory {
 namespace {
 
-Sky skyOf(const Study& study) {
-  const glm::dvec2 sun_deg = study.sky.sun_deg.value_or(glm::dvec2(90.0, 180.0));
-  return Sky(study.sky.cieType, study.sky.diffuseHorizontal_lx,
-             directionFromAngles(sun_deg.x, sun_deg.y, study.site.north_deg), study.groundReflectance);
+std::optional<SunBeam> beamOf(const Daylight& daylight, double groundReflectance) {
+  if (!(daylight.directNormal_lx > 0.0)) return std::nullopt;
+  return SunBeam{glm::vec3(daylight.towardsSun), static_cast<float>(daylight.directNormal_lx),
+                 groundReflectance * daylight.directNormal_lx * daylight.towardsSun.z / std::numbers::pi};
 }
 
 }  // namespace
 
-World::World(const Building& buildingIn, const Study& study)
+World::World(const Building& buildingIn, const Study& study) : World(buildingIn, study, daylightOf(study)) {}
+
+World::World(const Building& buildingIn, const Study& study, const Daylight& daylight)
     : building(buildingIn),
       rays(buildingIn.model, buildingIn.innerGlass),
-      sky(skyOf(study)),
-      layout(columnsFor(buildingIn, study.sky.diffuseHorizontal_lx > 0.0)),
+      sky(daylight.sky),
+      sun(beamOf(daylight, study.groundReflectance)),
+      layout(columnsFor(buildingIn, sky.horizontalIlluminance_lx() > 0.0, sun.has_value())),
       portalFactor_(static_cast<float>(study.dirtFactor * study.frameFactor)) {
   for (const Material& material : building.model.materials) {
     glass_.emplace_back();
-    if (material.glazing) glass_.back().emplace(luminanceOf(material.transmittance), material.panes);
+    if (!material.glazing) continue;
+    glass_.back() = material.glass == GlassKind::cie171Clear
+                        ? Glass::cie171Clear()
+                        : Glass(luminanceOf(material.transmittance), material.panes);
   }
   firstCorner_.push_back(0);
   for (std::size_t piece = 0; piece < pieces().size(); ++piece) {

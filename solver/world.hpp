@@ -8,12 +8,19 @@
 
 #include <geometry/building.hpp>
 #include <geometry/rays.hpp>
+#include <solver/daylight.hpp>
 #include <solver/glass.hpp>
-#include <solver/sky.hpp>
 
 #include "columns.hpp"
 
 namespace clerestory {
+
+/// The sun's beam.
+struct SunBeam {
+  glm::vec3 towards;          ///< unit vector to the middle of its disc
+  float normal_lx;            ///< illuminance square to the beam
+  double ground_cd_m2 = 0.0;  ///< what the beam adds to the luminance of the uniform ground
+};
 
 class World {
  public:
@@ -22,6 +29,7 @@ class World {
   const Building& building;
   RayScene rays;
   Sky sky;
+  std::optional<SunBeam> sun;  ///< where it shines
   ColumnLayout layout;
 
   [[nodiscard]] const Pieces& pieces() const { return building.model.pieces; }
@@ -39,7 +47,10 @@ class World {
   }
   /// Glass of a glazing piece, and the factor on its transmittance by dirt and undrawn frames.
   [[nodiscard]] const Glass& glassOf(std::uint32_t piece) const { return *glass_[pieces().material[piece]]; }
-  [[nodiscard]] float portalFactor() const { return portalFactor_; }
+  /// An opening has neither.
+  [[nodiscard]] float portalFactor(std::uint32_t piece) const {
+    return materialOf(piece).transmittance == glm::dvec3(1.0) ? 1.0F : portalFactor_;
+  }
   /// Colour of a glazing's transmittance beside its luminance, 1 where it is grey.
   [[nodiscard]] glm::dvec3 tintOf(std::uint32_t piece) const;
 
@@ -54,6 +65,8 @@ class World {
                   std::span<float> visible) const;
 
  private:
+  World(const Building& building, const Study& study, const Daylight& daylight);
+
   std::vector<std::optional<Glass>> glass_;  // #materials
   std::vector<glm::vec3> corners_;
   std::vector<std::size_t> firstCorner_;

@@ -116,8 +116,8 @@ TEST(Sky, Horizon) {
 }
 
 TEST(Sky, GroundIsUniform) {
-  const Sky sky(12, 10000.0, directionFromAngles(45.0, 0.0, 0.0), 0.25, 50000.0);
-  EXPECT_NEAR(sky.groundLuminance_cd_m2(), 0.25 * 60000.0 / pi, 1e-9);
+  const Sky sky(12, 10000.0, directionFromAngles(45.0, 0.0, 0.0), 0.25);
+  EXPECT_NEAR(sky.groundLuminance_cd_m2(), 0.25 * 10000.0 / pi, 1e-9);
   EXPECT_FLOAT_EQ(sky.luminance_cd_m2({0, 0, -1}), static_cast<float>(sky.groundLuminance_cd_m2()));
   EXPECT_EQ(sky.luminance_cd_m2({0, 0, -1}), sky.luminance_cd_m2(glm::normalize(glm::vec3(1, 1, -0.01F))));
 }

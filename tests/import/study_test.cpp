@@ -226,6 +226,22 @@ TEST(Study, RefusesWrongTypesAndRanges) {
                                  "[sky]\ntype = \"cie-012\"\n",
                                  "[sky]\ntype = \"cie-12\"\n",
                                  "[sky]\nsun = { altitude = 4 }\n",
+                                 "[sky]\ndirect_normal_lx = 5\n",
+                                 "[materials.a]\nglass = \"x\"\n",
+                                 "[[opening]]\npolygon = [[0,0,1]]\n",
+                                 "[[opening]]\nheight = 2\n",
+                                 "[[opening]]\npolygon = [[0,0,0], [1,0,0], [2,0,0]]\n",
+                                 "[[opening]]\npolygon = [[0,0,0], [1,0,0], [1,1,0], [0,1,0.2]]\n",
+                                 "[ground]\nmodel = \"wet\"\n",
+                                 "[materials.a]\nglass = \"cie171-6mm\"\ntransmittance = 0.5\n",
+                                 "[sky]\ntype = \"perez\"\n",
+                                 "[sky]\ntime = \"2026-03-21T10:00:00\"\n",
+                                 "[sky]\ntime = 2026-03-21\n",
+                                 "[sky]\ntime = 1726-03-21T10:00:00\n",
+                                 "[sky]\ntime = 2026-03-21T10:00:00\nsun = { altitude = 4, azimuth = 9 }\n",
+                                 "[sky]\ndirect_normal_w_m2 = 1\ndiffuse_horizontal_w_m2 = 1\n",
+                                 "[sky]\ntype = \"perez\"\ntime = 2026-03-21T10:00:00\n"
+                                 "direct_normal_w_m2 = 1\n",
                                  "sky = 3\n"}) {
     const std::string message = errorOfText(kModel + text);
     EXPECT_TRUE(contains(message, "study.toml:") || contains(message, "gone.csv")) << text << message;
@@ -233,11 +249,7 @@ TEST(Study, RefusesWrongTypesAndRanges) {
 }
 
 TEST(Study, SaysWhatThisVersionCannotDo) {
-  for (const std::string text : {"[[luminaire]]\nfile = \"a.ies\"\n", "[[opening]]\npolygon = [[0,0,1]]\n",
-                                 "[sky]\ndirect_normal_lx = 5\n", "[sky]\ntime = 2026-03-21T10:00:00\n",
-                                 "[sky]\ntype = \"perez\"\n", "[sky]\ndirect_normal_w_m2 = 1\n",
-                                 "[ground]\nmodel = \"shaded\"\n", "[materials.a]\ndiffusing = true\n",
-                                 "[materials.a]\nglass = \"x\"\n", "[[grid]]\nsurface = \"floor*\"\n",
+  for (const std::string text : {"[[luminaire]]\nfile = \"a.ies\"\n", "[[grid]]\nsurface = \"floor*\"\n",
                                  "[[view]]\nprojection = \"fisheye\"\neye = [0, 0, 0]\ntarget = [0, 1, 0]\n",
                                  "[accuracy]\ntime_limit_s = 5\n"}) {
     const std::string message = errorOfText(kModel + text);
@@ -252,6 +264,25 @@ TEST(Study, SaysWhereItIsNoToml) {
   EXPECT_TRUE(contains(errorOfText("[model]\nfile = \n"), "study.toml:2: is not valid TOML"));
   EXPECT_TRUE(contains(errorOfText("[sky]\n"), "names no model"));
   EXPECT_TRUE(contains(inputErrorOf([] { readStudy("gone.toml"); }), "study file not found: gone.toml"));
+}
+
+TEST(Study, ReadsTheSunByTimeAndWritesItAgain) {
+  const Study study = readText(kModel +
+                               "[sky]\ntype = \"perez\"\ntime = 2026-03-21T10:00:30-03:30\n"
+                               "direct_normal_w_m2 = 700\ndiffuse_horizontal_w_m2 = 90\n");
+  ASSERT_TRUE(study.sky.time);
+  EXPECT_TRUE(study.sky.isPerez);
+  EXPECT_EQ(study.sky.time->day, 21);
+  EXPECT_NEAR(study.sky.time->hour_h, 10.0 + 30.0 / 3600.0, 1e-12);
+  EXPECT_EQ(study.sky.time->zone_h, -3.5);
+  ASSERT_TRUE(study.sky.irradiance);
+  EXPECT_EQ(study.sky.irradiance->diffuseHorizontal_W_m2, 90.0);
+  const std::string text = studyToml(study);
+  EXPECT_TRUE(contains(text, "time = 2026-03-21T10:00:30-03:30\n")) << text;
+  Study again = readText(text);
+  again.assumptions = study.assumptions;
+  EXPECT_EQ(studyToml(again), text);
+  EXPECT_FALSE(readText(kModel + "[sky]\ntime = 2026-03-21T10:00:00\n").sky.time->zone_h);
 }
 
 TEST(Study, NamesSkies) {

@@ -17,6 +17,12 @@
 namespace clerestory {
 
 /// A Lambertian surface, or glass. Colours are linear Rec.709.
+/// How glazing transmits by angle.
+enum class GlassKind {
+  fresnel,     ///< equal clear sheets, absorption fitted to the stated transmittance
+  cie171Clear  ///< the 6 mm clear glass of CIE 171:2006, case 5.5
+};
+
 struct Material {
   std::string name;
   glm::dvec3 reflectance{0.5};  ///< diffuse, [0, 1)
@@ -25,6 +31,8 @@ struct Material {
   glm::dvec3 transmittance{0.7};        ///< glazing: visible, normal incidence, of the whole pane unit [0, 1]
   bool transmittanceIsAssumed = false;  ///< nothing stated it
   int panes = 1;                        ///< glazing: sheets of glass in the unit, for its behaviour by angle
+  GlassKind glass = GlassKind::fresnel;
+  bool diffusing = false;  ///< glazing: scatters what it lets through evenly (opal)
 };
 
 /// Polygons as corner lists in one array: polygon f has the points corners[begin[f]] … corners[begin[f + 1] -

@@ -30,12 +30,30 @@ struct MaterialRule {
   std::optional<glm::dvec3> transmittance;  ///< [0, 1], normal incidence
   std::optional<int> panes;
   std::optional<glm::dvec3> exitance_lm_m2;
+  std::optional<GlassKind> glass{};  ///< a preset, which states the transmittance too
+  std::optional<bool> diffusing{};
+};
+
+/// A moment as a clock on the wall shows it.
+struct ClockTime {
+  int year = 2026, month = 3, day = 21;
+  double hour_h = 12.0;          ///< since midnight
+  std::optional<double> zone_h;  ///< east of UTC; empty: the site's
+};
+
+/// What a weather file or a pyranometer states. [W/m²]
+struct Irradiance {
+  double directNormal_W_m2 = 0.0, diffuseHorizontal_W_m2 = 0.0;
 };
 
 struct SkySettings {
-  int cieType = 16;  ///< 1 … 15 as CIE S 011, 16 the traditional overcast sky; 0: uniform (same as 5)
+  int cieType = 16;      ///< 1 … 15 as CIE S 011, 16 the traditional overcast sky; 0: uniform (same as 5)
+  bool isPerez = false;  ///< Perez all-weather sky in place of a CIE type
   double diffuseHorizontal_lx = 10000.0;
-  std::optional<glm::dvec2> sun_deg;  ///< altitude, azimuth from north over east
+  double directNormal_lx = 0.0;          ///< the sun's beam; 0 leaves it out
+  std::optional<Irradiance> irradiance;  ///< in place of both illuminances; for Perez
+  std::optional<glm::dvec2> sun_deg;     ///< altitude, azimuth from north over east; or …
+  std::optional<ClockTime> time;         ///< … the time that gives them
 };
 
 struct GridSettings {
@@ -68,8 +86,10 @@ struct Study {
   std::vector<MaterialRule> materials;  ///< in the file's order: later ones win
   SkySettings sky;
   double groundReflectance = 0.2;
-  double dirtFactor = 1.0;   ///< on every portal's transmittance
-  double frameFactor = 1.0;  ///< likewise; 1 where the model draws its frames
+  bool groundIsShaded = false;  ///< a surface below the model that it shades; else of uniform luminance
+  std::vector<std::vector<glm::dvec3>> openings;  ///< outlines of holes in the envelope, without glass
+  double dirtFactor = 1.0;                        ///< on every portal's transmittance
+  double frameFactor = 1.0;                       ///< likewise; 1 where the model draws its frames
   std::vector<GridSettings> grids;
   std::vector<ViewSettings> views;
   double accuracy = 0.05;  ///< asked 95th percentile of the sensors' relative errors
@@ -77,8 +97,11 @@ struct Study {
   std::vector<std::string> assumptions;  ///< what was taken for granted, in sentences for the report
 };
 
+/// "2026-03-21T10:00:00", with the zone where the time has one of its own.
+std::string clockTimeText(const ClockTime& time);
+
 /// Reads a study. Unknown keys are an error that names the nearest known one; keys of later versions
-/// (luminaires, sun, openings) are an error that says so. Throws InputError with file and line.
+/// (luminaires) are an error that says so. Throws InputError with file and line.
 Study readStudy(const std::filesystem::path& file);
 
 /// The study of a model alone: overcast sky of 10,000 lx, a grid 0.85 m above each floor.
@@ -90,6 +113,10 @@ std::optional<double> parseAccuracy(const std::string& text);
 /// Applies the study's material rules to `scene` and checks what is stated. A rule that matches nothing is
 /// a diagnosis. Throws InputError naming the material.
 void applyMaterialRules(const Study& study, Scene& scene);
+
+/// Adds to a model what a study states beside it: openings as panes that let all light through, and a ground
+/// that the model shades, 2 cm below its lowest point.
+void addSurroundings(const Study& study, Scene& scene);
 
 /// study.toml text that gives `study` again, with comments for what was assumed.
 std::string studyToml(const Study& study);

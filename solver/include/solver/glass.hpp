@@ -18,6 +18,11 @@ class Glass {
   /// normalTransmittance in [0, 1], sheets >= 1, refractiveIndex >= 1; std::invalid_argument elsewhere.
   explicit Glass(double normalTransmittance, int sheets = 1, double refractiveIndex = 1.52);
 
+  /// The 6 mm clear glass of CIE 171:2006, case 5.5: its transmittance is the polynomial in the cosine of
+  /// Tregenza and Sharples (0.8788 at normal incidence), its reflectance that of a sheet that transmits as
+  /// much.
+  static Glass cie171Clear();
+
   /// By |cosine| of the angle of incidence, from a table: within 1e-4 of the model. transmittance +
   /// reflectance <= 1.
   float transmittance(float cosIncidence) const;
