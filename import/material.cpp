@@ -121,6 +121,11 @@ Material materialOf(const DisplayMaterial& display, std::vector<Diagnosis>& diag
   material.glazing = isGlazing(display, diagnoses);
   if (!material.glazing) {
     material.reflectance = reflectanceOf(display, diagnoses);
+    material.mirrorsAsMatt = display.mirrors;
+    if (display.mirrors) {
+      addDiagnosis(diagnoses,
+                   {"C135", "what a metal or a mirror reflects counts as matt, in its colour", where});
+    }
     return material;
   }
   material.reflectance = glm::dvec3(0.0);

@@ -77,11 +77,13 @@ double chooseUnit(const std::filesystem::path& file, const Format& format, const
 }
 
 void bringUpright(Scene& scene, const std::string& upAxis, double metres) {
+  const auto upright = [&](const glm::dvec3& v) { return upAxis == "y" ? glm::dvec3(v.x, -v.z, v.y) : v; };
   for (glm::dvec3& point : scene.points) {
-    if (upAxis == "y") {
-      point = {point.x, -point.z, point.y};
-    }
-    point *= metres;
+    point = upright(point) * metres;
+  }
+  for (PunctualLight& light : scene.lights) {
+    light.position_m = upright(light.position_m) * metres;
+    light.direction = upright(light.direction);
   }
 }
 
