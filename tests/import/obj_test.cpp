@@ -163,7 +163,7 @@ TEST(Obj, ReadsTagsAsACage) {
   const Scene scene = readText(kSquare +
                                "v 0 0 2\nv 4 0 2\no plain\nf 1 2 3 4\no soft\nf 1 2 3 4\nf 1 2 6 5\n"
                                "t crease 3/2/0 0 1 2 1.5 12\nt crease 2/1/0 0 2 9\nt corner 1/1/0 4 3\n"
-                               "t interpolateboundary 1/0/0 1\nt hole 1/0/0 1\n");
+                               "t interpolateboundary 1/0/0 2\nt hole 1/0/0 1\n");
   ASSERT_EQ(scene.cages.size(), 1U);
   EXPECT_EQ(scene.faces.size(), 1U);
   const Cage& cage = scene.cages[0];
