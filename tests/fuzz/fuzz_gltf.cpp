@@ -35,7 +35,7 @@ Glb split(const std::uint8_t* data, std::size_t size) {
   if (size < 20 || std::memcmp(data, "glTF", 4) != 0) {
     return {text(0, size), ""};
   }
-  const std::size_t jsonEnd = std::min<std::size_t>(size, 20 + u32(data + 12));
+  const std::size_t jsonEnd = std::min(size, 20 + std::size_t{u32(data + 12)});
   return {text(20, jsonEnd), size >= jsonEnd + 8 ? text(jsonEnd + 8, size) : ""};
 }
 
