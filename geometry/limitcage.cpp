@@ -156,4 +156,12 @@ std::optional<LimitCage> limitCage(const Scene& scene, const Cage& cage, double 
   return LimitCage{std::move(local->points), std::move(refiner)};
 }
 
+bool takesSurfaces(const LimitCage& cage) {
+  const Far::TopologyLevel& level = cage.refiner->GetLevel(0);
+  for (int vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+    if (level.GetVertexFaces(vertex).size() < 3 && !level.IsVertexBoundary(vertex)) return false;
+  }
+  return true;
+}
+
 }  // namespace clerestory

@@ -23,4 +23,8 @@ struct LimitCage {
 /// cannot be subdivided: OpenSubdiv must not see it.
 std::optional<LimitCage> limitCage(const Scene& scene, const Cage& cage, double grid_m);
 
+/// Whether Bfr can make surfaces of the faces: OpenSubdiv 3.5.0 reads beyond its arrays where two faces alone
+/// meet at a vertex that is not on the boundary.
+bool takesSurfaces(const LimitCage& cage);
+
 }  // namespace clerestory

@@ -325,6 +325,23 @@ class CageFacets {
   std::vector<Edge> edges_;
 };
 
+/// The cage's own faces.
+void addDrawn(const Scene& scene, const Cage& cage, Soup& soup) {
+  std::map<std::uint32_t, std::uint32_t> pointOf;
+  for (std::uint32_t face = 0; face < cage.faces.size(); ++face) {
+    if (std::ranges::binary_search(cage.holes, face)) continue;
+    Loop corners;
+    for (const std::uint32_t corner : cage.faces[face]) {
+      const auto [point, isNew] = pointOf.try_emplace(corner, static_cast<std::uint32_t>(soup.points.size()));
+      if (isNew) soup.points.push_back(scene.points[corner]);
+      corners.push_back(point->second);
+    }
+    soup.faces.add(corners);
+    soup.material.push_back(cage.material);
+    soup.object.push_back(cage.object);
+  }
+}
+
 }  // namespace
 
 void tessellateCage(const Scene& scene, const Cage& cage, const Tolerances& tolerances, Soup& soup,
@@ -334,6 +351,13 @@ void tessellateCage(const Scene& scene, const Cage& cage, const Tolerances& tole
   const std::optional<LimitCage> limit = limitCage(scene, cage, tolerances.grid_m);
   if (!limit) {
     addDiagnosis(diagnoses, {"G210", "a subdivision cage could not be read and was left out", name});
+    return;
+  }
+  if (!takesSurfaces(*limit)) {
+    addDiagnosis(
+        diagnoses,
+        {"G213", "a subdivision cage with two faces folded onto each other was taken as it is drawn", name});
+    addDrawn(scene, cage, soup);
     return;
   }
   if (cage.boundary == Cage::Boundary::none) {

@@ -208,6 +208,19 @@ TEST(Subdivision, BoundaryRules) {
   EXPECT_EQ(countOf(cleanScene(scene), "G211"), 0U);
 }
 
+TEST(Subdivision, FoldedFacesAreTakenAsDrawn) {
+  Scene scene = cubeCage(Cage::Scheme::catmark, 0.005);
+  Cage& cage = scene.cages[0];
+  const auto face = cage.faces[0];
+  PolygonList folded;  // one face of the cube and the same seen from its back: each corner has two faces
+  folded.add(face);
+  folded.add(std::vector(face.rbegin(), face.rend()));
+  cage.faces = folded;
+  const CleanModel model = cleanScene(scene);
+  EXPECT_EQ(countOf(model, "G213"), 1U);
+  EXPECT_GT(totalArea_m2(model), 0.99);
+}
+
 TEST(Subdivision, IndicesOutOfRangeAreRefused) {
   Scene scene = cubeCage(Cage::Scheme::catmark, 0.005);
   scene.cages[0].creases.push_back({0, 99, 2.0F});
