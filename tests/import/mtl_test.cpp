@@ -61,11 +61,13 @@ TEST(Mtl, LetsDissolveStandOverTransparency) {
 
 TEST(Mtl, KnowsGlassByName) {
   for (const char* name : {"Glass", "glas", "Glazing_01", "windowGlass", "Verre clair", "vidrio", "Vetro",
-                           "pane 3", "Fensterscheibe", "GLASS"}) {
+                           "pane 3", "Fensterscheibe", "GLASS", "vidro_temperado", "Cristal-6mm",
+                           "dubbelglas", "Sklo 4", "szyba", "Стекло", "стекло_01", "玻璃", "ガラス 2"}) {
     EXPECT_TRUE(materialFrom("Kd 0.5 0.5 0.5\n", name).glazing) << name;
   }
   for (const char* name : {"fibreglass", "FiberGlass", "glasswool", "glass wool", "glass frame", "panel",
-                           "Glasgow", "windowframe", "spyglasses", "mirror glass"}) {
+                           "Glasgow", "windowframe", "spyglasses", "mirror glass", "laine de verre",
+                           "lana di vetro", "Glass Block", "marco de vidrio", "camera", "стеклопластик"}) {
     EXPECT_FALSE(materialFrom("Kd 0.5 0.5 0.5\n", name).glazing) << name;
   }
 }
