@@ -96,7 +96,7 @@ GltfDocument::GltfDocument(const std::filesystem::path& file)
   if (bytes.size() >= 4 && readU32(bytes, 0) == kGlbMagic) {
     readGlb(bytes);
   } else {
-    const std::string text = plainText(std::move(bytes), file_);
+    const std::string text = decodedText(std::move(bytes), file_);
     if (text.size() > kMaxJsonBytes) {
       throw InputError(file_ + ": more than 256 MiB of JSON; save it as .glb");
     }

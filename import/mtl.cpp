@@ -232,7 +232,7 @@ class MtlReader {
 
 void readMtl(const std::filesystem::path& file, MaterialLibrary& library, std::vector<Diagnosis>& diagnoses) {
   try {
-    const std::string text = plainText(readWholeFile(file, "material", kMaxMtlBytes), file.string());
+    const std::string text = decodedText(readWholeFile(file, "material", kMaxMtlBytes), file.string());
     MtlReader(file, library, diagnoses).read(text);
   } catch (const InputError& error) {
     addDiagnosis(diagnoses,

@@ -297,7 +297,7 @@ class ObjReader {
 }  // namespace
 
 Scene readObj(const std::filesystem::path& file) {
-  const std::string text = plainText(readWholeFile(file, "model", kMaxObjBytes), file.string());
+  const std::string text = decodedText(readWholeFile(file, "model", kMaxObjBytes), file.string());
   return ObjReader(file).read(text);
 }
 

@@ -92,15 +92,25 @@ std::string fromUtf16(std::string_view bytes) {
 
 }  // namespace
 
-std::string plainText(std::string bytes, const std::string& file) {
+std::string_view plainText(std::string_view bytes, const std::string& file) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
-    bytes = fromUtf16(bytes);
-  } else if (bytes.starts_with("\xEF\xBB\xBF")) {
-    bytes.erase(0, 3);
+    throw InputError(file + ": is UTF-16 text; save it as UTF-8");
   }
-  if (bytes.find('\0') != std::string::npos) {
+  if (bytes.starts_with("\xEF\xBB\xBF")) {
+    bytes.remove_prefix(3);
+  }
+  if (bytes.find('\0') != std::string_view::npos) {
     throw InputError(file + ": holds zero bytes, so it is not a text file; check that its ending is right");
   }
+  return bytes;
+}
+
+std::string decodedText(std::string bytes, const std::string& file) {
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    bytes = fromUtf16(bytes);
+  }
+  const std::string_view text = plainText(bytes, file);
+  bytes.erase(0, bytes.size() - text.size());
   return bytes;
 }
 

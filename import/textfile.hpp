@@ -27,9 +27,10 @@ struct Place {
 std::string readWholeFile(const std::filesystem::path& file, const std::string& kind,
                           std::uintmax_t maxBytes);
 
-/// `bytes` without a UTF-8 byte order mark; UTF-16 behind its mark becomes UTF-8. Throws InputError for bytes
-/// that are no text.
-std::string plainText(std::string bytes, const std::string& file);
+/// `bytes` without a UTF-8 byte order mark. Throws InputError for UTF-16 and for bytes that are no text.
+std::string_view plainText(std::string_view bytes, const std::string& file);
+/// The same, but UTF-16 behind its byte order mark becomes UTF-8.
+std::string decodedText(std::string bytes, const std::string& file);
 
 /// Logical lines of a text with LF, CRLF or CR ends; a line that ends in a backslash goes on in the next.
 class LineReader {
