@@ -6,6 +6,8 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
+#include <string>
 #include <system_error>
 #include <thread>
 
@@ -16,6 +18,8 @@
 
 #include <report/report.hpp>
 
+#include "exit_code.hpp"
+
 namespace clerestory {
 namespace {
 
@@ -24,11 +28,26 @@ void cleanUp() {
   std::fputs("\nclerestory: interrupted; an older report stays as it was\n", stderr);
 }
 
+/// Where a library cannot even throw: without memory or threads, as a rule.
+[[noreturn]] void endInTrouble() {
+  std::string what = "for no reason that it gives";
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::exception& error) {
+    what = error.what();
+  } catch (...) {
+  }
+  abandonReport();
+  std::fprintf(stderr, "clerestory: error: a fault of the program or the machine: %s\n", what.c_str());
+  std::_Exit(exitMachineFailed);
+}
+
 }  // namespace
 
 #ifdef _WIN32
 
 void endCleanlyWhenInterrupted() {
+  std::set_terminate(endInTrouble);
   // Windows calls it in a thread of its own.
   std::signal(SIGINT, [](int) {
     cleanUp();
@@ -52,6 +71,7 @@ void waitAndEnd(sigset_t signals) {
 }  // namespace
 
 void endCleanlyWhenInterrupted() {
+  std::set_terminate(endInTrouble);
   // A file that grows beyond a limit is an error of writing, not the end.
   std::signal(SIGXFSZ, SIG_IGN);
   sigset_t signals;

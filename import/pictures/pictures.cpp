@@ -237,6 +237,10 @@ void drawText(std::uint8_t* rgb, int width, int height, int x, int y, const std:
 #endif
 
 extern "C" CLERESTORY_EXPORT const clerestory::PictureFiles* clerestoryPictureFiles() {
+  // Its pools of threads gain nothing on pictures of our size, and end the program where no thread is to be
+  // had.
+  OIIO::attribute("threads", 1);
+  OIIO::attribute("exr_threads", -1);
   static const clerestory::PictureFiles files{clerestory::read, clerestory::writeHalf, clerestory::writeBytes,
                                               clerestory::drawText};
   return &files;

@@ -180,6 +180,16 @@ TEST_F(Faults, WithoutMemoryTheProgramSaysSo) {
   }
 }
 
+/// What needs no pictures works without their library and does not pay for loading it; what does says so.
+TEST_F(Faults, WithoutThePicturesLibraryOnlyPicturesFail) {
+  fs::create_directory(place_.path() / "alone");
+  fs::copy_file(CLERESTORY_PROGRAM, place_.path() / "alone" / "clerestory");
+  EXPECT_EQ(run("--version; ./alone/clerestory inspect room.obj"), 0) << messages();
+  EXPECT_EQ(run("--version; ./alone/clerestory study new.toml -o report --quiet"), 3);
+  EXPECT_NE(messages().find("the library for pictures cannot be loaded"), std::string::npos) << messages();
+  EXPECT_EQ(readReport(), new_) << "as it was";
+}
+
 TEST_F(Faults, VanishedFolderIsNamed) {
   EXPECT_EQ(run("study new.toml -o gone/report --quiet"), 1);
   EXPECT_NE(messages().find("gone"), std::string::npos) << messages();
