@@ -38,7 +38,7 @@ struct PictureFiles {
   using Attributes =
       std::vector<std::pair<std::string, std::variant<std::string, float, std::vector<float>>>>;
 
-  /// PNG, JPEG, WebP, TIFF, BMP, TGA, OpenEXR and HDR; `name` is for its ending and for
+  /// PNG, JPEG, WebP, BMP, TGA and HDR; `name` is for its ending and for
   /// messages.
   std::string (*read)(std::string_view bytes, const std::string& name, PictureEncoding encoding,
                       Picture& picture);
