@@ -89,6 +89,7 @@ Json inspectionJson(const Building& building, const Totals& totals, const std::v
       row["panes"] = material.panes;
     }
     row["exitance_lm_m2"] = vectorJson(material.exitance_lm_m2);
+    row["mirrors_as_matt"] = material.mirrorsAsMatt;
     json["materials"].push_back(std::move(row));
   }
   json["domains"] = Json::array();
@@ -175,7 +176,9 @@ std::string materialsText(const Building& building, const Totals& totals) {
                colourText(material.reflectance, 3),
                material.glazing ? colourText(material.transmittance, 3) : "",
                emits ? colourText(material.exitance_lm_m2, 1) : "",
-               material.glazing && material.transmittanceIsAssumed ? "transmittance assumed" : ""});
+               material.glazing && material.transmittanceIsAssumed ? "transmittance assumed"
+               : material.mirrorsAsMatt                            ? "metal or mirror, taken as matt"
+                                                                   : ""});
   }
   return table.text();
 }

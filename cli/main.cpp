@@ -14,6 +14,7 @@
 
 #include "exit_code.hpp"
 #include "inspect.hpp"
+#include "interrupt.hpp"
 #include "progress.hpp"
 #include "study.hpp"
 
@@ -52,7 +53,7 @@ std::optional<ExitCode> parse(int argc, char** argv, std::function<void()>& run)
       "  clerestory inspect office.glb      what is in the model and what had to be repaired\n"
       "  clerestory study --help            every option of a command, with its default\n\n"
       "Exit codes: 0 done, 1 the input is wrong, 2 the command line is wrong, 3 the machine failed (disk, "
-      "memory).");
+      "memory),\n128 + n ended by signal n.");
   program.require_subcommand(1);
   addStudyCommand(program, commandLineOf(argc, argv), run);
   addInspectCommand(program, run);
@@ -79,6 +80,7 @@ std::optional<ExitCode> parse(int argc, char** argv, std::function<void()>& run)
 }
 
 ExitCode runProgram(int argc, char** argv) {
+  endCleanlyWhenInterrupted();
   try {
     std::function<void()> run;
     if (const auto code = parse(argc, argv, run)) {

@@ -3,7 +3,8 @@
 
 # A package's headers are system headers to us, whatever its config file says.
 foreach(package IN ITEMS embree glm::glm TBB::tbb CGAL::CGAL OpenImageIO::OpenImageIO CLI11::CLI11
-                         tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json)
+                         tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json
+                         draco::draco meshoptimizer::meshoptimizer)
   if(TARGET ${package})
     get_target_property(aliased ${package} ALIASED_TARGET)
     if(aliased)

@@ -347,7 +347,8 @@ class Region {
     }
     Triangulation triangulation = triangulate(flat_, edges);
     for (int attempt = 0; triangulation.crossing && attempt < 3; ++attempt) {
-      edges = splitAtPoints(flat_, splitAtCrossings(edges), tolerances_.collinear_m);
+      edges = splitAtCrossings(edges);  // adds points, so that flat_ moves
+      edges = splitAtPoints(flat_, edges, tolerances_.collinear_m);
       triangulation = triangulate(flat_, edges);
     }
     if (triangulation.crossing) return false;

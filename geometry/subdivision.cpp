@@ -1,107 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Subdivision cages become facets of their limit surfaces.
 //
-// The rate of an edge follows from its limit curve alone and its points are evaluated once, from one face, so
-// neighbours agree to the bit. Inside a face the rate is raised until its facets keep to the surface. Flat
-// parts need no care here: their facets are merged again with their plane.
+// Rates of edges are raised until the facets of their faces keep to the surface; a face's inside has the
+// rates of its edges, so its facets are quadrilaterals in rows where opposite edges agree. An edge's points
+// are evaluated once, from one face, so neighbours agree to the bit. Flat parts need no care here: their
+// facets are merged again with their plane.
 #include "subdivision.hpp"
 
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 #include <opensubdiv/bfr/surface.h>
 #include <opensubdiv/bfr/tessellation.h>
-#include <opensubdiv/far/topologyDescriptor.h>
-#include <opensubdiv/far/topologyRefinerFactory.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
+#include <map>
 #include <optional>
+#include <set>
+#include <vector>
+
+#include "limitcage.hpp"
 
 namespace clerestory {
 namespace {
 
 using namespace OpenSubdiv;
-using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
 
 constexpr int highestRate = 64;
-constexpr std::size_t mostCorners = 1000;  ///< of one face
-
-/// The cage in OpenSubdiv's terms: only its own points, numbered by first use.
-struct LocalCage {
-  std::vector<double> points;  ///< 3 × #points
-  std::vector<int> faceSizes, corners, creaseEnds, cornerPoints, holes;
-  std::vector<float> creaseWeights, cornerWeights;
-};
-
-/// Empty where an index is out of range or a face cannot be subdivided: OpenSubdiv must not see it.
-std::optional<LocalCage> checkedCage(const Scene& scene, const Cage& cage, double grid_m) {
-  LocalCage local;
-  std::vector<int> numberOf(scene.points.size(), -1);
-  for (std::size_t face = 0; face < cage.faces.size(); ++face) {
-    const auto corners = cage.faces[face];
-    const bool sizeFits = cage.scheme == Cage::Scheme::loop
-                              ? corners.size() == 3
-                              : corners.size() >= 3 && corners.size() <= mostCorners;
-    if (!sizeFits) return std::nullopt;
-    local.faceSizes.push_back(static_cast<int>(corners.size()));
-    for (const std::uint32_t corner : corners) {
-      if (corner >= scene.points.size()) return std::nullopt;
-      if (numberOf[corner] < 0) {
-        numberOf[corner] = static_cast<int>(local.points.size() / 3);
-        // On the grid already here: rates must not depend on how a file rounds.
-        const glm::dvec3 point = onGrid(scene.points[corner], grid_m);
-        for (int i = 0; i < 3; ++i) local.points.push_back(point[i]);
-      }
-      local.corners.push_back(numberOf[corner]);
-    }
-  }
-  const auto isOwn = [&](std::uint32_t point) { return point < numberOf.size() && numberOf[point] >= 0; };
-  for (const Cage::Crease& crease : cage.creases) {
-    if (!isOwn(crease.a) || !isOwn(crease.b)) return std::nullopt;
-    local.creaseEnds.push_back(numberOf[crease.a]);
-    local.creaseEnds.push_back(numberOf[crease.b]);
-    local.creaseWeights.push_back(crease.sharpness);
-  }
-  for (const Cage::Corner& corner : cage.corners) {
-    if (!isOwn(corner.point)) return std::nullopt;
-    local.cornerPoints.push_back(numberOf[corner.point]);
-    local.cornerWeights.push_back(corner.sharpness);
-  }
-  for (const std::uint32_t hole : cage.holes) {
-    if (hole >= cage.faces.size()) return std::nullopt;
-    local.holes.push_back(static_cast<int>(hole));
-  }
-  return local;
-}
-
-std::unique_ptr<Far::TopologyRefiner> makeRefiner(const LocalCage& local, const Cage& cage) {
-  Far::TopologyDescriptor descriptor;
-  descriptor.numVertices = static_cast<int>(local.points.size() / 3);
-  descriptor.numFaces = static_cast<int>(local.faceSizes.size());
-  descriptor.numVertsPerFace = local.faceSizes.data();
-  descriptor.vertIndicesPerFace = local.corners.data();
-  descriptor.numCreases = static_cast<int>(local.creaseWeights.size());
-  descriptor.creaseVertexIndexPairs = local.creaseEnds.data();
-  descriptor.creaseWeights = local.creaseWeights.data();
-  descriptor.numCorners = static_cast<int>(local.cornerWeights.size());
-  descriptor.cornerVertexIndices = local.cornerPoints.data();
-  descriptor.cornerWeights = local.cornerWeights.data();
-  descriptor.numHoles = static_cast<int>(local.holes.size());
-  descriptor.holeIndices = local.holes.data();
-
-  Sdc::Options rules;
-  // Without interpolation the boundary faces would have no limit surface: their edges are kept instead.
-  rules.SetVtxBoundaryInterpolation(cage.boundary == Cage::Boundary::edgeAndCorner
-                                        ? Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER
-                                        : Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-  const Sdc::SchemeType scheme = cage.scheme == Cage::Scheme::catmark ? Sdc::SCHEME_CATMARK
-                                 : cage.scheme == Cage::Scheme::loop  ? Sdc::SCHEME_LOOP
-                                                                      : Sdc::SCHEME_BILINEAR;
-  Factory::Options options(scheme, rules);
-  options.validateFullTopology = true;
-  return std::unique_ptr<Far::TopologyRefiner>(Factory::Create(descriptor, options));
-}
 
 /// The limit surface of one face, ready to be evaluated.
 class FaceSurface {
@@ -144,9 +69,13 @@ double distanceToPlane(const glm::dvec3& point, const std::array<glm::dvec3, 3>&
   return length > 0.0 ? std::abs(glm::dot(point - triangle[0], normal)) / length : 0.0;
 }
 
+int raised(int rate) {
+  return std::min(highestRate, rate + std::max(1, rate / 4));
+}
+
 /// The lowest rate whose chords keep to the curve of an edge.
 int rateOfEdge(const FaceSurface& surface, int edge, double tolerance_m) {
-  for (int rate = 1; rate < highestRate; rate = rate < 4 ? rate + 1 : rate + rate / 2) {
+  for (int rate = 1; rate < highestRate; rate = raised(rate)) {
     double worst = 0.0;
     for (int i = 0; i < rate; ++i) {
       const auto place = [&](double t) { return surface.onEdge(edge, (i + t) / rate); };
@@ -167,7 +96,13 @@ struct Pattern {
   std::size_t boundary = 0;
 };
 
-Pattern makePattern(const FaceSurface& surface, const std::vector<int>& rates) {
+/// With a rate for each edge; inside, the larger one of each direction.
+Pattern makePattern(const FaceSurface& surface, std::vector<int> rates) {
+  if (rates.size() == 4) {
+    rates.insert(rates.end(), {std::max(rates[0], rates[2]), std::max(rates[1], rates[3])});
+  } else {
+    rates.push_back(*std::max_element(rates.begin(), rates.end()));
+  }
   Bfr::Tessellation::Options options;
   options.SetFacetSize(4).PreserveQuads(true);
   const Bfr::Tessellation tessellation(surface.parameterization(), static_cast<int>(rates.size()),
@@ -185,14 +120,8 @@ Pattern makePattern(const FaceSurface& surface, const std::vector<int>& rates) {
 
 /// Largest distance of the surface from the pattern's triangles, at their middles and their sides'.
 double facetError_m(const FaceSurface& surface, const Pattern& pattern) {
-  const Bfr::Parameterization domain = surface.parameterization();
   const auto uv = [&](int i) { return &pattern.uv[2 * static_cast<std::size_t>(i)]; };
   const auto error = [&](int a, int b, int c) {
-    // Parameters of a face in parts jump between them: only triangles within one part can be judged.
-    if (domain.HasSubFaces() && (domain.GetSubFace(uv(a)) != domain.GetSubFace(uv(b)) ||
-                                 domain.GetSubFace(uv(a)) != domain.GetSubFace(uv(c)))) {
-      return 0.0;
-    }
     const auto point = [&](int i) { return pattern.points[static_cast<std::size_t>(i)]; };
     const std::array<glm::dvec3, 3> triangle{point(a), point(b), point(c)};
     double most = 0.0;
@@ -213,50 +142,34 @@ double facetError_m(const FaceSurface& surface, const Pattern& pattern) {
   return worst;
 }
 
-/// Raises the inner rates until the facets keep to the surface.
-Pattern fittingPattern(const FaceSurface& surface, std::vector<int> rates, double tolerance_m) {
-  const std::size_t edges = rates.size();
-  if (surface.parameterization().GetType() == Bfr::Parameterization::QUAD) {
-    rates.push_back(std::max(rates[0], rates[2]));
-    rates.push_back(std::max(rates[1], rates[3]));
-  } else {
-    rates.push_back(*std::max_element(rates.begin(), rates.end()));
-  }
-  for (;;) {
-    Pattern pattern = makePattern(surface, rates);
-    const bool isFine = rates[edges] >= highestRate && rates.back() >= highestRate;
-    if (pattern.facets.empty() || isFine || facetError_m(surface, pattern) <= tolerance_m) return pattern;
-    for (std::size_t i = edges; i < rates.size(); ++i)
-      rates[i] = std::min(highestRate, rates[i] + (rates[i] + 1) / 2);
-  }
-}
-
 /// Builds the facets of one cage; points of the cage's vertices and edges are shared between its faces.
 class CageFacets {
  public:
-  CageFacets(const Far::TopologyRefiner& refiner, const LocalCage& local, double tolerance_m, double planar_m,
-             Soup& soup)
-      : level_(refiner.GetLevel(0)),
-        local_(local),
-        factory_(refiner),
+  CageFacets(const LimitCage& cage, double tolerance_m, double planar_m, Soup& soup)
+      : level_(cage.refiner->GetLevel(0)),
         tolerance_m_(tolerance_m),
         planar_m_(planar_m),
         soup_(soup),
         vertexPoint_(static_cast<std::size_t>(level_.GetNumVertices()), none),
-        edges_(static_cast<std::size_t>(level_.GetNumEdges())) {}
+        edges_(static_cast<std::size_t>(level_.GetNumEdges())) {
+    const Bfr::RefinerSurfaceFactory<> factory(*cage.refiner);
+    for (int face = 0; face < level_.GetNumFaces(); ++face)
+      surfaces_.emplace_back(factory, face, cage.points);
+  }
 
   /// Returns the number of facets; `withoutLimit` counts faces that have no limit surface.
   std::size_t build(const Cage& cage, std::size_t& withoutLimit) {
+    chooseRates();
     std::size_t facets = 0;
     for (int face = 0; face < level_.GetNumFaces(); ++face) {
       if (level_.IsFaceHole(face)) continue;
-      const FaceSurface surface(factory_, face, local_.points);
+      const FaceSurface& surface = surfaces_[static_cast<std::size_t>(face)];
       if (!surface) {
         ++withoutLimit;
         continue;
       }
-      const std::vector<int> rates = shareEdges(face, surface);
-      const Pattern pattern = fittingPattern(surface, rates, tolerance_m_);
+      evaluateEdges(face, surface);
+      const Pattern pattern = makePattern(surface, ratesOf(face));
       const Loop points = pointsOf(face, pattern);
       for (const auto& facet : pattern.facets) facets += addFacet(cage, points, facet);
     }
@@ -300,25 +213,88 @@ class CageFacets {
     return static_cast<std::uint32_t>(soup_.points.size() - 1);
   }
 
-  /// Rates of the face's edges; evaluates the points of edges and vertices that no face before it had.
-  std::vector<int> shareEdges(int face, const FaceSurface& surface) {
+  [[nodiscard]] bool isBuilt(int face) const {
+    return !level_.IsFaceHole(face) && surfaces_[static_cast<std::size_t>(face)];
+  }
+
+  [[nodiscard]] std::vector<int> ratesOf(int face) const {
+    std::vector<int> rates;
+    for (const int edge : level_.GetFaceEdges(face))
+      rates.push_back(edges_[static_cast<std::size_t>(edge)].rate);
+    return rates;
+  }
+
+  /// Edges first by their own curves; then, in rounds, those of the faces whose facets leave the surface. In
+  /// a round every face sees the same rates, so like faces of a symmetric cage come out alike.
+  void chooseRates() {
+    std::set<int> pending;
+    for (int face = 0; face < level_.GetNumFaces(); ++face) {
+      if (!isBuilt(face)) continue;
+      pending.insert(face);
+      const auto edges = level_.GetFaceEdges(face);
+      for (int i = 0; i < edges.size(); ++i) {
+        int& rate = edges_[static_cast<std::size_t>(edges[i])].rate;
+        if (rate == 0) rate = rateOfEdge(surfaces_[static_cast<std::size_t>(face)], i, tolerance_m_);
+      }
+    }
+    while (!pending.empty()) {
+      std::map<int, int> raises;  // by edge
+      for (const int face : pending) {
+        const std::vector<int> rates = ratesOf(face);
+        if (errorOf(face, rates) <= tolerance_m_) continue;
+        const std::vector<int> better = bestRaise(face, rates);
+        const auto edges = level_.GetFaceEdges(face);
+        for (int i = 0; i < edges.size(); ++i) {
+          const auto at = static_cast<std::size_t>(i);
+          if (better[at] > rates[at]) raises[edges[i]] = std::max(raises[edges[i]], better[at]);
+        }
+      }
+      pending.clear();
+      for (const auto& [edge, rate] : raises) {
+        edges_[static_cast<std::size_t>(edge)].rate = rate;
+        for (const int beside : level_.GetEdgeFaces(edge)) {
+          if (isBuilt(beside)) pending.insert(beside);
+        }
+      }
+    }
+  }
+
+  /// No error where no rate can help any more.
+  [[nodiscard]] double errorOf(int face, const std::vector<int>& rates) const {
+    const FaceSurface& surface = surfaces_[static_cast<std::size_t>(face)];
+    const bool isFinest = std::ranges::all_of(rates, [](int rate) { return rate >= highestRate; });
+    return isFinest ? 0.0 : facetError_m(surface, makePattern(surface, rates));
+  }
+
+  /// Of a face with four edges, the direction is raised that gains more; else all edges.
+  [[nodiscard]] std::vector<int> bestRaise(int face, const std::vector<int>& rates) const {
+    const auto with = [&](std::size_t first, std::size_t step) {
+      std::vector<int> more = rates;
+      for (std::size_t i = first; i < more.size(); i += step) more[i] = raised(more[i]);
+      return more;
+    };
+    if (rates.size() != 4) return with(0, 1);
+    const std::vector<int> along = with(0, 2);
+    const std::vector<int> across = with(1, 2);
+    if (along == rates || across == rates) return with(0, 1);
+    return errorOf(face, along) <= errorOf(face, across) ? along : across;
+  }
+
+  /// Evaluates the points of edges and vertices that no face before it had.
+  void evaluateEdges(int face, const FaceSurface& surface) {
     const auto vertices = level_.GetFaceVertices(face);
     const auto edges = level_.GetFaceEdges(face);
-    std::vector<int> rates;
     for (int i = 0; i < edges.size(); ++i) {
       std::uint32_t& corner = vertexPoint_[static_cast<std::size_t>(vertices[i])];
       if (corner == none) corner = addPoint(surface.onEdge(i, 0.0));
       Edge& edge = edges_[static_cast<std::size_t>(edges[i])];
-      if (edge.rate == 0) {
-        edge.rate = rateOfEdge(surface, i, tolerance_m_);
+      if (edge.firstVertex < 0) {
         edge.firstVertex = vertices[i];
         for (int k = 1; k < edge.rate; ++k) {
           edge.inner.push_back(addPoint(surface.onEdge(i, static_cast<double>(k) / edge.rate)));
         }
       }
-      rates.push_back(edge.rate);
     }
-    return rates;
   }
 
   /// Indices in the soup of the pattern's points.
@@ -341,8 +317,7 @@ class CageFacets {
   }
 
   const Far::TopologyLevel& level_;
-  const LocalCage& local_;
-  Bfr::RefinerSurfaceFactory<> factory_;
+  std::vector<FaceSurface> surfaces_;  ///< #faces
   double tolerance_m_;
   double planar_m_;
   Soup& soup_;
@@ -350,16 +325,39 @@ class CageFacets {
   std::vector<Edge> edges_;
 };
 
+/// The cage's own faces.
+void addDrawn(const Scene& scene, const Cage& cage, Soup& soup) {
+  std::map<std::uint32_t, std::uint32_t> pointOf;
+  for (std::uint32_t face = 0; face < cage.faces.size(); ++face) {
+    if (std::ranges::binary_search(cage.holes, face)) continue;
+    Loop corners;
+    for (const std::uint32_t corner : cage.faces[face]) {
+      const auto [point, isNew] = pointOf.try_emplace(corner, static_cast<std::uint32_t>(soup.points.size()));
+      if (isNew) soup.points.push_back(scene.points[corner]);
+      corners.push_back(point->second);
+    }
+    soup.faces.add(corners);
+    soup.material.push_back(cage.material);
+    soup.object.push_back(cage.object);
+  }
+}
+
 }  // namespace
 
 void tessellateCage(const Scene& scene, const Cage& cage, const Tolerances& tolerances, Soup& soup,
                     CleanupCounts& counts, std::vector<Diagnosis>& diagnoses) {
   const std::string name = cage.object < scene.objects.size() ? scene.objects[cage.object] : "";
   if (cage.faces.size() == 0) return;
-  const std::optional<LocalCage> local = checkedCage(scene, cage, tolerances.grid_m);
-  const std::unique_ptr<Far::TopologyRefiner> refiner = local ? makeRefiner(*local, cage) : nullptr;
-  if (!refiner) {
+  const std::optional<LimitCage> limit = limitCage(scene, cage, tolerances.grid_m);
+  if (!limit) {
     addDiagnosis(diagnoses, {"G210", "a subdivision cage could not be read and was left out", name});
+    return;
+  }
+  if (!takesSurfaces(*limit)) {
+    addDiagnosis(
+        diagnoses,
+        {"G213", "a subdivision cage with two faces folded onto each other was taken as it is drawn", name});
+    addDrawn(scene, cage, soup);
     return;
   }
   if (cage.boundary == Cage::Boundary::none) {
@@ -369,7 +367,7 @@ void tessellateCage(const Scene& scene, const Cage& cage, const Tolerances& tole
   }
   constexpr double finest_m = 1e-4;
   std::size_t withoutLimit = 0;
-  CageFacets facets(*refiner, *local, std::max(cage.tolerance_m, finest_m), tolerances.planar_m, soup);
+  CageFacets facets(*limit, std::max(cage.tolerance_m, finest_m), tolerances.planar_m, soup);
   counts.cageFacets += facets.build(cage, withoutLimit);
   if (withoutLimit > 0) {
     addDiagnosis(diagnoses, {"G212", "faces of a subdivision cage have no limit surface and were left out",

@@ -1,42 +1,80 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads glTF 2.0: walks the scene's nodes and makes polygons, or cages, of their meshes.
+// Reads glTF 2.0: walks the scene's nodes, places their meshes and lamps.
 #include "gltf.hpp"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
-#include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
-#include <map>
+#include <cmath>
+#include <numbers>
 #include <optional>
-#include <utility>
 
-#include "cage.hpp"
-#include "gltfcage.hpp"
 #include "gltfdocument.hpp"
-#include "gltfmaterial.hpp"
+#include "gltfmesh.hpp"
 #include "textfile.hpp"
 
 namespace clerestory {
 namespace {
 
+/// Extensions that are read, and those whose absence changes no figure.
 constexpr auto kExtensions = std::to_array<std::string_view>(
-    {"KHR_materials_emissive_strength", "KHR_materials_transmission", "KHR_materials_pbrSpecularGlossiness",
-     "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_clearcoat", "KHR_materials_sheen",
-     "KHR_materials_volume", "KHR_materials_unlit", "KHR_materials_iridescence", "KHR_materials_anisotropy",
-     "KHR_materials_dispersion", "KHR_texture_transform", "KHR_texture_basisu", "EXT_texture_webp"});
+    {"EXT_mesh_gpu_instancing",    "EXT_meshopt_compression",   "EXT_texture_webp",
+     "KHR_draco_mesh_compression", "KHR_lights_punctual",       "KHR_materials_anisotropy",
+     "KHR_materials_clearcoat",    "KHR_materials_dispersion",  "KHR_materials_emissive_strength",
+     "KHR_materials_ior",          "KHR_materials_iridescence", "KHR_materials_pbrSpecularGlossiness",
+     "KHR_materials_sheen",        "KHR_materials_specular",    "KHR_materials_transmission",
+     "KHR_materials_unlit",        "KHR_materials_variants",    "KHR_materials_volume",
+     "KHR_mesh_quantization",      "KHR_texture_transform",     "KHR_xmp_json_ld"});
+constexpr std::size_t kMaxInstances = 1'000'000;
 
-/// glTF's primitive modes that have faces.
-enum Mode : std::size_t { kTriangles = 4, kStrip = 5, kFan = 6 };
+bool isKnown(std::string_view extension) {
+  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
+}
+
+glm::dmat4 matrixOf(const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale) {
+  glm::dmat4 matrix = glm::mat4_cast(glm::normalize(rotation));
+  for (int axis = 0; axis < 3; ++axis) {
+    matrix[axis] *= scale[axis];
+  }
+  matrix[3] = glm::dvec4(translation, 1.0);
+  return matrix;
+}
+
+glm::dmat4 localMatrix(const JsonNode& node) {
+  if (const auto stated = node.find("matrix")) {
+    const std::vector<double> m = stated->numbers(16);
+    glm::dmat4 matrix(1.0);
+    for (int i = 0; i < 16; ++i) {
+      matrix[i / 4][i % 4] = m[static_cast<std::size_t>(i)];
+    }
+    return matrix;
+  }
+  const auto vector = [&](const char* key, double otherwise) {
+    const auto value = node.find(key);
+    const std::vector<double> v = value ? value->numbers(3) : std::vector<double>(3, otherwise);
+    return glm::dvec3(v[0], v[1], v[2]);
+  };
+  glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
+  if (const auto stated = node.find("rotation")) {
+    const std::vector<double> q = stated->numbers(4);
+    rotation = glm::dquat(q[3], q[0], q[1], q[2]);
+    if (glm::length(rotation) < 1e-9) {
+      stated->fail("has to be a unit quaternion");
+    }
+  }
+  return matrixOf(vector("translation", 0.0), rotation, vector("scale", 1.0));
+}
 
 class GltfReader {
  public:
   explicit GltfReader(const std::filesystem::path& file)
-      : document_(file),
-        stem_(cleanName(file.stem().string())),
-        budget_(1'000'000 + 20 * document_.byteCount()) {}
+      : document_(file), stem_(cleanName(file.stem().string())), meshes_(document_, scene_) {}
 
   Scene read() {
     checkExtensions();
@@ -48,6 +86,7 @@ class GltfReader {
       const std::vector<Visit> children = enter(visit);
       pending.insert(pending.end(), children.rbegin(), children.rend());
     }
+    meshes_.finish();
     return std::move(scene_);
   }
 
@@ -56,24 +95,20 @@ class GltfReader {
     std::size_t node;
     glm::dmat4 parent;
   };
-  /// Where an accessor's positions lie in the scene's points, for the node at hand.
-  struct Span {
-    std::uint32_t first;
-    std::size_t count;
-  };
 
   void checkExtensions() {
     for (const JsonNode& name : document_.root().elements("extensionsRequired")) {
-      const std::string text = name.text();
-      if (std::find(kExtensions.begin(), kExtensions.end(), text) == kExtensions.end()) {
-        name.fail("the model needs the extension \"" + cleanName(text) +
-                  "\", which is not read; export without it (compression, instancing)");
+      if (!isKnown(name.text())) {
+        name.fail("the model needs the extension \"" + cleanName(name.text()) +
+                  "\", which is not read; export without it");
       }
     }
     for (const JsonNode& name : document_.root().elements("extensionsUsed")) {
-      if (name.text() == "KHR_lights_punctual" || name.text() == "EXT_mesh_gpu_instancing") {
-        addDiagnosis(scene_.diagnoses, {"C132", "lamps and instances from glTF extensions were left out",
-                                        name.pointer() + " " + name.text()});
+      if (!isKnown(name.text())) {
+        addDiagnosis(scene_.diagnoses, {"C137",
+                                        "the extension \"" + cleanName(name.text()) +
+                                            "\" is not known, and what it says is left out",
+                                        name.pointer()});
       }
     }
   }
@@ -110,36 +145,6 @@ class GltfReader {
     return visits;
   }
 
-  static glm::dmat4 localMatrix(const JsonNode& node) {
-    glm::dmat4 matrix(1.0);
-    if (const auto stated = node.find("matrix")) {
-      const std::vector<double> m = stated->numbers(16);
-      for (int i = 0; i < 16; ++i) {
-        matrix[i / 4][i % 4] = m[static_cast<std::size_t>(i)];
-      }
-      return matrix;
-    }
-    if (const auto rotation = node.find("rotation")) {
-      const std::vector<double> q = rotation->numbers(4);
-      const glm::dquat quaternion(q[3], q[0], q[1], q[2]);
-      if (glm::length(quaternion) < 1e-9) {
-        rotation->fail("has to be a unit quaternion");
-      }
-      matrix = glm::mat4_cast(glm::normalize(quaternion));
-    }
-    if (const auto scale = node.find("scale")) {
-      const std::vector<double> s = scale->numbers(3);
-      for (int axis = 0; axis < 3; ++axis) {
-        matrix[axis] *= s[static_cast<std::size_t>(axis)];
-      }
-    }
-    if (const auto translation = node.find("translation")) {
-      const std::vector<double> t = translation->numbers(3);
-      matrix[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
-    }
-    return matrix;
-  }
-
   /// Reads one node and returns its children.
   std::vector<Visit> enter(const Visit& visit) {
     const JsonNode node = document_.root().at("nodes")[visit.node];
@@ -153,7 +158,10 @@ class GltfReader {
         addDiagnosis(scene_.diagnoses,
                      {"C133", "skinned meshes were read in the pose they were modelled in", node.pointer()});
       }
-      readMesh(node, document_.root().at("meshes")[*mesh], matrix);
+      addMesh(node, document_.root().at("meshes")[*mesh], matrix);
+    }
+    if (const auto light = node.extension("KHR_lights_punctual")) {
+      addLight(node, *light, matrix);
     }
     std::vector<Visit> children;
     if (const auto list = node.find("children")) {
@@ -164,180 +172,98 @@ class GltfReader {
     return children;
   }
 
-  void readMesh(const JsonNode& node, const JsonNode& mesh, const glm::dmat4& matrix) {
+  void addMesh(const JsonNode& node, const JsonNode& mesh, const glm::dmat4& matrix) {
     std::string name = cleanName(node.textOr("name", ""));
     if (name.empty()) {
       name = cleanName(mesh.textOr("name", ""));
     }
-    object_ = static_cast<std::uint32_t>(scene_.objects.size());
-    scene_.objects.push_back(name.empty() ? stem_ : name);
-    matrix_ = matrix;
-    mirrored_ = glm::determinant(glm::dmat3(matrix)) < 0.0;
-    spans_.clear();
-    const auto extras = mesh.find("extras");
-    const bool isObject = extras && extras->isObject();
-    if (const auto cage = isObject ? extras->find("clerestory") : std::nullopt) {
-      readCage(mesh, *cage);
-      return;
+    if (name.empty()) {
+      name = stem_;
     }
-    for (const JsonNode& primitive : mesh.elements("primitives")) {
-      readPrimitive(primitive);
-    }
-  }
-
-  /// The points of accessor `index` in the scene, transformed; read once for each node.
-  Span points(std::size_t index, const JsonNode& user) {
-    const auto found = spans_.find(index);
-    if (found != spans_.end()) {
-      return found->second;
-    }
-    const std::vector<glm::dvec3> local = document_.positions(index);
-    spend(local.size(), user);
-    const Span span{static_cast<std::uint32_t>(scene_.points.size()), local.size()};
-    for (const glm::dvec3& point : local) {
-      const glm::dvec3 placed(matrix_ * glm::dvec4(point, 1.0));
-      if (!(glm::all(glm::lessThan(glm::abs(placed), glm::dvec3(1e12))))) {
-        user.fail("its node's transformation sends a point beyond 1e12");
-      }
-      scene_.points.push_back(placed);
-    }
-    return spans_.emplace(index, span).first->second;
-  }
-
-  /// Small files can place large meshes often: more than twenty elements a byte is not a building.
-  void spend(std::size_t elements, const JsonNode& user) {
-    if (elements > budget_) {
-      user.fail("the model repeats its meshes too often: more geometry than its size allows");
-    }
-    budget_ -= elements;
-  }
-
-  Span positionSpan(const JsonNode& primitive) {
-    const auto index =
-        primitive.at("attributes").index("POSITION", document_.countOf("accessors"), "accessor");
-    if (!index) {
-      primitive.fail("has no POSITION; compressed geometry is not read, export without compression");
-    }
-    return points(*index, primitive);
-  }
-
-  void readPrimitive(const JsonNode& primitive) {
-    const std::size_t mode = primitive.countOr("mode", kTriangles);
-    if (mode > kFan) {
-      primitive.fail("mode " + std::to_string(mode) + " is not one of glTF's");
-    }
-    if (mode < kTriangles) {
-      addDiagnosis(scene_.diagnoses, {"C111", "points, lines, curves and free-form surfaces were left out",
-                                      primitive.pointer()});
-      return;
-    }
-    if (!primitive.at("attributes").find("POSITION") && !primitive.find("extensions")) {
-      addDiagnosis(scene_.diagnoses,
-                   {"C134", "primitives without positions were left out", primitive.pointer()});
-      return;
-    }
-    const Span span = positionSpan(primitive);
-    std::vector<std::uint32_t> corners(0);
-    if (const auto index = primitive.index("indices", document_.countOf("accessors"), "accessor")) {
-      corners = document_.indices(*index);
-      const auto beyond =
-          std::find_if(corners.begin(), corners.end(), [&](std::uint32_t c) { return c >= span.count; });
-      if (beyond != corners.end()) {
-        primitive.fail("index " + std::to_string(*beyond) + " is out of range: there are " +
-                       std::to_string(span.count) + " positions");
+    if (const auto instancing = node.extension("EXT_mesh_gpu_instancing")) {
+      for (const glm::dmat4& instance : instances(*instancing)) {
+        meshes_.add(mesh, name, matrix * instance);
       }
     } else {
-      corners.resize(span.count);
-      for (std::uint32_t i = 0; i < corners.size(); ++i) {
-        corners[i] = i;
-      }
-    }
-    spend(corners.size(), primitive);
-    addTriangles(corners, mode, span.first, material(primitive));
-  }
-
-  void addTriangles(const std::vector<std::uint32_t>& corners, std::size_t mode, std::uint32_t first,
-                    std::uint32_t material) {
-    const std::size_t count = mode == kTriangles    ? corners.size() / 3
-                              : corners.size() >= 3 ? corners.size() - 2
-                                                    : 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      std::array<std::uint32_t, 3> t{};
-      if (mode == kTriangles) {
-        t = {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
-      } else if (mode == kStrip) {
-        t = {corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]};
-      } else {
-        t = {corners[i + 1], corners[i + 2], corners[0]};
-      }
-      const bool joint = mode != kTriangles && (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]);
-      if (joint) {
-        continue;  // only there to join strips
-      }
-      if (mirrored_) {
-        std::swap(t[1], t[2]);
-      }
-      for (std::uint32_t& corner : t) {
-        corner += first;
-      }
-      scene_.faces.add(t);
-      scene_.faceMaterial.push_back(material);
-      scene_.faceObject.push_back(object_);
+      meshes_.add(mesh, name, matrix);
     }
   }
 
-  void readCage(const JsonNode& mesh, const JsonNode& tags) {
-    const JsonNode primitives = mesh.at("primitives");
-    if (primitives.size() == 0) {
-      mesh.fail("a cage needs a primitive with its points");
-    }
-    const Span span = positionSpan(primitives[0]);
-    Cage cage = readGltfCage(tags, span.first, span.count);
-    spend(cage.faces.corners.size(), tags);
-    cage.object = object_;
-    cage.material = material(primitives[0]);
-    if (mirrored_) {
-      for (std::size_t f = 0; f < cage.faces.size(); ++f) {
-        std::reverse(cage.faces.corners.begin() + cage.faces.begin[f],
-                     cage.faces.corners.begin() + cage.faces.begin[f + 1]);
-      }
-    }
-    checkCage(cage, scene_);
-    scene_.cages.push_back(std::move(cage));
-  }
-
-  /// The primitive's material in the scene, numbered in the order of first use.
-  std::uint32_t material(const JsonNode& primitive) {
-    const auto index = primitive.index("material", document_.countOf("materials"), "material");
-    const auto next = static_cast<std::uint32_t>(scene_.materials.size());
-    const auto [found, isNew] = materialOf_.try_emplace(index, next);
-    if (isNew) {
-      DisplayMaterial display;
+  /// Matrices of EXT_mesh_gpu_instancing: as many as its accessors have elements.
+  std::vector<glm::dmat4> instances(const JsonNode& extension) const {
+    const JsonNode attributes = extension.at("attributes");
+    std::optional<std::size_t> count;
+    const auto values = [&](const char* key, const char* type, std::size_t components) {
+      const auto index = attributes.index(key, document_.countOf("accessors"), "accessor");
+      std::vector<double> read = index ? document_.numbers(*index, type, components) : std::vector<double>{};
       if (index) {
-        display = gltfMaterial(document_.root().at("materials")[*index], scene_.diagnoses);
-      } else {
-        display.color = glm::dvec3(1.0);  // glTF's default material is white
+        if (count.value_or(read.size() / components) != read.size() / components) {
+          attributes.fail("TRANSLATION, ROTATION and SCALE differ in their number of elements");
+        }
+        count = read.size() / components;
       }
-      if (display.name.empty()) {
-        display.name = index ? "material " + std::to_string(*index) : "default";
-      }
-      scene_.materials.push_back(materialOf(display, scene_.diagnoses));
+      return read;
+    };
+    const std::vector<double> t = values("TRANSLATION", "VEC3", 3);
+    const std::vector<double> r = values("ROTATION", "VEC4", 4);
+    const std::vector<double> s = values("SCALE", "VEC3", 3);
+    if (count.value_or(0) > kMaxInstances) {
+      attributes.fail("more than " + std::to_string(kMaxInstances) + " instances");
     }
-    return found->second;
+    std::vector<glm::dmat4> matrices;
+    for (std::size_t i = 0; i < count.value_or(0); ++i) {
+      const glm::dvec3 translation =
+          t.empty() ? glm::dvec3(0.0) : glm::dvec3(t[3 * i], t[3 * i + 1], t[3 * i + 2]);
+      const glm::dvec3 scale = s.empty() ? glm::dvec3(1.0) : glm::dvec3(s[3 * i], s[3 * i + 1], s[3 * i + 2]);
+      const glm::dquat rotation = r.empty() ? glm::dquat(1.0, 0.0, 0.0, 0.0)
+                                            : glm::dquat(r[4 * i + 3], r[4 * i], r[4 * i + 1], r[4 * i + 2]);
+      matrices.push_back(matrixOf(translation, rotation, scale));
+    }
+    return matrices;
+  }
+
+  /// KHR_lights_punctual: they shine along the node's -z.
+  void addLight(const JsonNode& node, const JsonNode& use, const glm::dmat4& matrix) {
+    const JsonNode lights = document_.root().at("extensions").at("KHR_lights_punctual").at("lights");
+    const auto index = use.index("light", lights.size(), "light");
+    if (!index) {
+      use.fail("\"light\" is missing");
+    }
+    const JsonNode light = lights[*index];
+    PunctualLight placed;
+    placed.name = cleanName(node.textOr("name", light.textOr("name", "light " + std::to_string(*index))));
+    const std::string type = light.at("type").text();
+    if (type != "point" && type != "spot" && type != "directional") {
+      light.at("type").fail("is none of point, spot, directional");
+    }
+    placed.kind = type == "point"  ? PunctualLight::Kind::point
+                  : type == "spot" ? PunctualLight::Kind::spot
+                                   : PunctualLight::Kind::directional;
+    placed.position_m = glm::dvec3(matrix[3]);
+    const glm::dvec3 axis = -glm::dvec3(matrix[2]);
+    const bool isPlaced = glm::all(glm::lessThan(glm::abs(placed.position_m), glm::dvec3(1e12)));
+    if (!isPlaced || !(glm::length(axis) > 0.0) || !std::isfinite(glm::length(axis))) {
+      node.fail("its transformation leaves its lamp no place or no direction");
+    }
+    placed.direction = glm::normalize(axis);
+    const auto color = light.find("color");
+    const std::vector<double> rgb = color ? color->numbers(3) : std::vector<double>(3, 1.0);
+    placed.intensity = light.numberOr("intensity", 1.0) * glm::dvec3(rgb[0], rgb[1], rgb[2]);
+    if (const auto spot = light.find("spot")) {
+      placed.innerCone_rad = spot->numberOr("innerConeAngle", 0.0);
+      placed.outerCone_rad = spot->numberOr("outerConeAngle", std::numbers::pi / 4.0);
+    } else {
+      placed.outerCone_rad = std::numbers::pi / 4.0;
+    }
+    scene_.lights.push_back(std::move(placed));
+    addDiagnosis(scene_.diagnoses, {"C132", "lamps from the model were left out", node.pointer()});
   }
 
   GltfDocument document_;
   std::string stem_;
-  std::size_t budget_;  // points and corners that may still be made
   Scene scene_;
+  GltfMeshes meshes_;
   std::vector<bool> visited_;
-  std::map<std::optional<std::size_t>, std::uint32_t> materialOf_;
-
-  // Of the node at hand:
-  std::uint32_t object_ = 0;
-  glm::dmat4 matrix_{1.0};
-  bool mirrored_ = false;
-  std::map<std::size_t, Span> spans_;
 };
 
 }  // namespace

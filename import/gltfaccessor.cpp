@@ -3,24 +3,29 @@
 // read.
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "gltfdocument.hpp"
 
 namespace clerestory {
 namespace {
 
-constexpr std::size_t kByte = 5121;
-constexpr std::size_t kShort = 5123;
-constexpr std::size_t kInt = 5125;
-constexpr std::size_t kFloat = 5126;
+enum ComponentType : std::size_t {
+  kSignedByte = 5120,
+  kByte = 5121,
+  kSignedShort = 5122,
+  kShort = 5123,
+  kInt = 5125,
+  kFloat = 5126
+};
 constexpr std::size_t kMaxZeros = 1'000'000;  // elements that no byte stands for
 
 std::size_t componentSize(std::size_t type, const JsonNode& accessor) {
   switch (type) {
-    case 5120:
+    case kSignedByte:
     case kByte:
       return 1;
-    case 5122:
+    case kSignedShort:
     case kShort:
       return 2;
     case kInt:
@@ -38,7 +43,31 @@ Value load(const char* data) {
   return value;
 }
 
-std::uint32_t loadUnsigned(const char* data, std::size_t type) {
+/// An integer, or the fraction of its type's largest value that it stands for (glTF 2.0, 3.6.2.2).
+template <typename Value>
+double loadInteger(const char* data, bool normalized) {
+  const auto value = static_cast<double>(load<Value>(data));
+  return normalized ? std::max(value / static_cast<double>(std::numeric_limits<Value>::max()), -1.0) : value;
+}
+
+double loadNumber(const char* data, std::size_t type, bool normalized) {
+  switch (type) {
+    case kSignedByte:
+      return loadInteger<std::int8_t>(data, normalized);
+    case kByte:
+      return loadInteger<std::uint8_t>(data, normalized);
+    case kSignedShort:
+      return loadInteger<std::int16_t>(data, normalized);
+    case kShort:
+      return loadInteger<std::uint16_t>(data, normalized);
+    case kInt:
+      return loadInteger<std::uint32_t>(data, normalized);
+    default:
+      return static_cast<double>(load<float>(data));
+  }
+}
+
+std::uint32_t loadIndex(const char* data, std::size_t type) {
   switch (type) {
     case kByte:
       return load<std::uint8_t>(data);
@@ -49,16 +78,10 @@ std::uint32_t loadUnsigned(const char* data, std::size_t type) {
   }
 }
 
-glm::dvec3 loadPoint(const char* data, const JsonNode& accessor, std::size_t index) {
-  const glm::dvec3 point(load<float>(data), load<float>(data + 4), load<float>(data + 8));
-  if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) {
-    accessor.fail("position " + std::to_string(index) + " is not finite");
+void checkIsIndex(std::size_t type, const JsonNode& node) {
+  if (type != kByte && type != kShort && type != kInt) {
+    node.fail("indices have to be unsigned bytes, shorts or ints");
   }
-  return point;
-}
-
-bool isUnsigned(std::size_t type) {
-  return type == kByte || type == kShort || type == kInt;
 }
 
 }  // namespace
@@ -71,6 +94,11 @@ JsonNode GltfDocument::accessorNode(std::size_t index) const {
   return accessors[index];
 }
 
+std::string_view GltfDocument::viewBytes(const JsonNode& user) const {
+  std::size_t stride = 0;
+  return view(user, stride);
+}
+
 /// The bytes of the buffer view that `user` names, and its stride (0: packed).
 std::string_view GltfDocument::view(const JsonNode& user, std::size_t& stride) const {
   const auto index = user.index("bufferView", countOf("bufferViews"), "bufferView");
@@ -78,6 +106,13 @@ std::string_view GltfDocument::view(const JsonNode& user, std::size_t& stride) c
     user.fail("\"bufferView\" is missing");
   }
   const JsonNode node = root().at("bufferViews")[*index];
+  stride = node.countOr("byteStride", 0);
+  const auto decoded = decodedViews_.find(*index);
+  return decoded != decodedViews_.end() ? std::string_view(decoded->second) : bufferBytes(node);
+}
+
+/// What lies from byteOffset on, byteLength long, in the buffer that `node` names.
+std::string_view GltfDocument::bufferBytes(const JsonNode& node) const {
   const auto buffer = node.index("buffer", buffers_.size(), "buffer");
   if (!buffer) {
     node.fail("\"buffer\" is missing");
@@ -89,7 +124,6 @@ std::string_view GltfDocument::view(const JsonNode& user, std::size_t& stride) c
     node.fail("reaches beyond the end of its buffer: offset " + std::to_string(offset) + " and length " +
               std::to_string(length) + " of " + std::to_string(bytes.size()) + " bytes");
   }
-  stride = node.countOr("byteStride", 0);
   return bytes.substr(offset, length);
 }
 
@@ -122,67 +156,80 @@ GltfDocument::Elements GltfDocument::accessorElements(const JsonNode& accessor, 
   if (accessor.find("bufferView")) {
     return elements(accessor, count, componentType, components);
   }
-  if (!accessor.find("sparse")) {
-    accessor.fail("has no bufferView; compressed geometry is not read, export without compression");
-  }
   if (count > kMaxZeros) {
     accessor.fail("has no bufferView for its " + std::to_string(count) + " elements");
   }
+  static_cast<void>(componentSize(componentType, accessor));
   return {nullptr, count, 0, componentType};
 }
 
-std::vector<glm::dvec3> GltfDocument::positions(std::size_t index) const {
-  const JsonNode accessor = accessorNode(index);
-  const Elements values = accessorElements(accessor, "VEC3", 3);
-  if (values.componentType != kFloat) {
-    accessor.fail("positions have to be float; export without quantisation");
-  }
-  std::vector<glm::dvec3> points(values.count, glm::dvec3(0.0));
-  for (std::size_t i = 0; i < values.count && values.data != nullptr; ++i) {
-    points[i] = loadPoint(values.data + i * values.stride, accessor, i);
-  }
-  applySparse(accessor, points);
-  return points;
-}
-
-/// Sparse accessors: some elements stand elsewhere.
-void GltfDocument::applySparse(const JsonNode& accessor, std::vector<glm::dvec3>& points) const {
+/// Calls `replace(place, data)` for each element of a sparse accessor that stands elsewhere.
+template <typename Replace>
+void GltfDocument::forEachSparse(const JsonNode& accessor, const Elements& whole, std::size_t components,
+                                 const Replace& replace) const {
   const auto sparse = accessor.find("sparse");
   if (!sparse) {
     return;
   }
   const std::size_t count = sparse->at("count").count();
   const JsonNode places = sparse->at("indices");
-  const JsonNode values = sparse->at("values");
   const std::size_t type = places.at("componentType").count();
-  if (!isUnsigned(type)) {
-    places.fail("indices have to be unsigned");
-  }
+  checkIsIndex(type, places);
   const Elements at = elements(places, count, type, 1);
-  const Elements to = elements(values, count, kFloat, 3);
+  const Elements to = elements(sparse->at("values"), count, whole.componentType, components);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t place = loadUnsigned(at.data + i * at.stride, type);
-    if (place >= points.size()) {
+    const std::size_t place = loadIndex(at.data + i * at.stride, type);
+    if (place >= whole.count) {
       places.fail("element " + std::to_string(place) + " is out of range: there are " +
-                  std::to_string(points.size()));
+                  std::to_string(whole.count));
     }
-    points[place] = loadPoint(to.data + i * to.stride, values, i);
+    replace(place, to.data + i * to.stride);
   }
+}
+
+std::vector<double> GltfDocument::numbers(std::size_t index, const char* type, std::size_t components) const {
+  const JsonNode accessor = accessorNode(index);
+  const Elements whole = accessorElements(accessor, type, components);
+  const auto normalizedNode = accessor.find("normalized");
+  const bool normalized = normalizedNode && normalizedNode->isTrue();
+  const std::size_t size = componentSize(whole.componentType, accessor);
+  std::vector<double> values(whole.count * components, 0.0);
+  const auto read = [&](std::size_t element, const char* data) {
+    for (std::size_t c = 0; c < components; ++c) {
+      const double value = loadNumber(data + c * size, whole.componentType, normalized);
+      if (!std::isfinite(value)) {
+        accessor.fail("element " + std::to_string(element) + " is not finite");
+      }
+      values[element * components + c] = value;
+    }
+  };
+  for (std::size_t i = 0; i < whole.count && whole.data != nullptr; ++i) {
+    read(i, whole.data + i * whole.stride);
+  }
+  forEachSparse(accessor, whole, components, read);
+  return values;
+}
+
+std::vector<glm::dvec3> GltfDocument::positions(std::size_t index) const {
+  const std::vector<double> values = numbers(index, "VEC3", 3);
+  std::vector<glm::dvec3> points(values.size() / 3);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  }
+  return points;
 }
 
 std::vector<std::uint32_t> GltfDocument::indices(std::size_t index) const {
   const JsonNode accessor = accessorNode(index);
-  if (accessor.find("sparse")) {
-    accessor.fail("sparse indices are not read");
+  const Elements whole = accessorElements(accessor, "SCALAR", 1);
+  checkIsIndex(whole.componentType, accessor);
+  std::vector<std::uint32_t> indices(whole.count, 0);
+  for (std::size_t i = 0; i < whole.count && whole.data != nullptr; ++i) {
+    indices[i] = loadIndex(whole.data + i * whole.stride, whole.componentType);
   }
-  const Elements values = accessorElements(accessor, "SCALAR", 1);
-  if (!isUnsigned(values.componentType)) {
-    accessor.fail("indices have to be unsigned bytes, shorts or ints");
-  }
-  std::vector<std::uint32_t> indices(values.count);
-  for (std::size_t i = 0; i < values.count; ++i) {
-    indices[i] = loadUnsigned(values.data + i * values.stride, values.componentType);
-  }
+  forEachSparse(accessor, whole, 1, [&](std::size_t place, const char* data) {
+    indices[place] = loadIndex(data, whole.componentType);
+  });
   return indices;
 }
 

@@ -2,10 +2,12 @@
 // Reads glTF's container: the JSON and binary chunks of .glb, the buffers of .gltf, data URIs.
 #include "gltfdocument.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include <import/error.hpp>
 
+#include "gltfcompression.hpp"
 #include "textfile.hpp"
 
 namespace clerestory {
@@ -13,6 +15,8 @@ namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = 4ULL << 30U;
 constexpr std::size_t kMaxJsonBytes = 256ULL << 20U;
+constexpr std::size_t kMaxExpansion = 64;  // of the whole file by compressed views
+constexpr const char* kMeshopt = "EXT_meshopt_compression";
 constexpr std::uint32_t kGlbMagic = 0x46546C67;   // "glTF"
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
 constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN"
@@ -85,13 +89,14 @@ std::string decodePercent(std::string_view text) {
 
 }  // namespace
 
-GltfDocument::GltfDocument(const std::filesystem::path& file) : file_(file.string()) {
-  const std::string bytes = readWholeFile(file, "model", kMaxFileBytes);
+GltfDocument::GltfDocument(const std::filesystem::path& file)
+    : folder_(file.parent_path()), file_(file.string()) {
+  std::string bytes = readWholeFile(file, "model", kMaxFileBytes);
   byteCount_ = bytes.size();
   if (bytes.size() >= 4 && readU32(bytes, 0) == kGlbMagic) {
     readGlb(bytes);
   } else {
-    const std::string_view text = plainText(bytes, file_);
+    const std::string text = decodedText(std::move(bytes), file_);
     if (text.size() > kMaxJsonBytes) {
       throw InputError(file_ + ": more than 256 MiB of JSON; save it as .glb");
     }
@@ -101,7 +106,8 @@ GltfDocument::GltfDocument(const std::filesystem::path& file) : file_(file.strin
   if (!version.text().starts_with("2.")) {
     version.fail("glTF " + cleanName(version.text()) + " is not read; export it as glTF 2.0");
   }
-  readBuffers(file.parent_path());
+  readBuffers();
+  decodeViews();
 }
 
 void GltfDocument::readGlb(std::string_view bytes) {
@@ -151,10 +157,20 @@ std::size_t GltfDocument::countOf(const char* array) const {
   return node ? node->size() : 0;
 }
 
-void GltfDocument::readBuffers(const std::filesystem::path& folder) {
+void GltfDocument::readBuffers() {
   const std::vector<JsonNode> nodes = root().elements("buffers");
+  const std::vector<JsonNode> views = root().elements("bufferViews");
+  const bool isCompressed = std::any_of(
+      views.begin(), views.end(), [](const JsonNode& view) { return view.extension(kMeshopt).has_value(); });
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    std::string bytes = readBuffer(nodes[i], i, folder);
+    // What only compressed views refer to, for readers that do not know their compression, may hold nothing.
+    const auto fallback = nodes[i].extension(kMeshopt);
+    const bool hasBytes = nodes[i].find("uri") || (i == 0 && hasBinaryChunk_);
+    if ((fallback && fallback->find("fallback")) || (isCompressed && !hasBytes)) {
+      buffers_.emplace_back();
+      continue;
+    }
+    std::string bytes = readBuffer(nodes[i], i);
     const std::size_t length = nodes[i].at("byteLength").count();
     if (bytes.size() < length) {
       nodes[i].fail("the buffer is cut off: it announces " + std::to_string(length) + " bytes and has " +
@@ -169,8 +185,7 @@ void GltfDocument::readBuffers(const std::filesystem::path& folder) {
   }
 }
 
-std::string GltfDocument::readBuffer(const JsonNode& buffer, std::size_t index,
-                                     const std::filesystem::path& folder) const {
+std::string GltfDocument::readBuffer(const JsonNode& buffer, std::size_t index) const {
   const auto uri = buffer.find("uri");
   if (!uri) {
     if (index != 0 || !hasBinaryChunk_) {
@@ -178,19 +193,38 @@ std::string GltfDocument::readBuffer(const JsonNode& buffer, std::size_t index,
     }
     return binaryChunk_;
   }
-  const std::string text = uri->text();
+  return uriBytes(*uri, "buffer", kMaxFileBytes);
+}
+
+std::string GltfDocument::uriBytes(const JsonNode& uri, const std::string& kind,
+                                   std::uintmax_t maxBytes) const {
+  const std::string text = uri.text();
   if (text.starts_with("data:")) {
     const std::size_t comma = text.find(',');
     if (comma == std::string::npos || text.substr(0, comma).find(";base64") == std::string::npos) {
-      uri->fail("a data URI has to be base64");
+      uri.fail("a data URI has to be base64");
     }
-    return decodeBase64(std::string_view(text).substr(comma + 1), *uri);
+    return decodeBase64(std::string_view(text).substr(comma + 1), uri);
   }
-  const auto file = fileInside(folder, decodePercent(text));
+  const auto file = fileInside(folder_, decodePercent(text));
   if (!file || text.find("://") != std::string::npos) {
-    uri->fail("a buffer has to lie in the model's folder, this one does not: " + cleanName(text));
+    uri.fail("a " + kind + " has to lie in the model's folder, this one does not: " + cleanName(text));
   }
-  return readWholeFile(*file, "buffer", kMaxFileBytes);
+  return readWholeFile(*file, kind, maxBytes);
+}
+
+void GltfDocument::decodeViews() {
+  const std::vector<JsonNode> views = root().elements("bufferViews");
+  const std::size_t budget = kMaxExpansion * byteCount_;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (const auto extension = views[i].extension(kMeshopt)) {
+      decodedViews_[i] = decodeMeshopt(*extension, bufferBytes(*extension));
+      byteCount_ += decodedViews_[i].size();
+      if (byteCount_ > std::min<std::size_t>(budget, kMaxFileBytes)) {
+        extension->fail("the model's compressed data has more than its size allows");
+      }
+    }
+  }
 }
 
 }  // namespace clerestory

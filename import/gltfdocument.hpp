@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,10 +26,20 @@ class GltfDocument {
   [[nodiscard]] std::size_t byteCount() const { return byteCount_; }  ///< of everything that was read
   [[nodiscard]] std::size_t countOf(const char* array) const;         ///< elements of a top-level array
 
-  /// The float VEC3s of accessor `index`, all finite.
+  /// The numbers of accessor `index`, `components` for each element of its `type` (VEC3 has 3), all finite;
+  /// integers that it calls normalized as fractions.
+  [[nodiscard]] std::vector<double> numbers(std::size_t index, const char* type,
+                                            std::size_t components) const;
+  /// The VEC3s of accessor `index`, all finite.
   [[nodiscard]] std::vector<glm::dvec3> positions(std::size_t index) const;
   /// The unsigned SCALARs of accessor `index`.
   [[nodiscard]] std::vector<std::uint32_t> indices(std::size_t index) const;
+  /// The bytes of the buffer view that `user` names.
+  [[nodiscard]] std::string_view viewBytes(const JsonNode& user) const;
+  /// The bytes that `uri` stands for: base64 data, or a file in the model's folder of at most `maxBytes`.
+  /// `kind` is for messages.
+  [[nodiscard]] std::string uriBytes(const JsonNode& uri, const std::string& kind,
+                                     std::uintmax_t maxBytes) const;
 
  private:
   /// Elements in a buffer: element i begins at data + i * stride.
@@ -40,22 +51,27 @@ class GltfDocument {
   };
 
   void readGlb(std::string_view bytes);
-  void readBuffers(const std::filesystem::path& folder);
-  [[nodiscard]] std::string readBuffer(const JsonNode& buffer, std::size_t index,
-                                       const std::filesystem::path& folder) const;
+  void readBuffers();
+  [[nodiscard]] std::string readBuffer(const JsonNode& buffer, std::size_t index) const;
+  void decodeViews();
   [[nodiscard]] std::string_view view(const JsonNode& user, std::size_t& stride) const;
+  [[nodiscard]] std::string_view bufferBytes(const JsonNode& node) const;
   [[nodiscard]] Elements elements(const JsonNode& accessor, std::size_t count, std::size_t componentType,
                                   std::size_t components) const;
   [[nodiscard]] Elements accessorElements(const JsonNode& accessor, const char* type,
                                           std::size_t components) const;
-  void applySparse(const JsonNode& accessor, std::vector<glm::dvec3>& points) const;
+  template <typename Replace>
+  void forEachSparse(const JsonNode& accessor, const Elements& whole, std::size_t components,
+                     const Replace& replace) const;
   [[nodiscard]] JsonNode accessorNode(std::size_t index) const;
 
+  std::filesystem::path folder_;
   std::string file_;
   nlohmann::json json_;
   std::string binaryChunk_;
   bool hasBinaryChunk_ = false;
   std::vector<std::string> buffers_;
+  std::map<std::size_t, std::string> decodedViews_;  // those that are compressed, by their index
   std::size_t byteCount_ = 0;
 };
 

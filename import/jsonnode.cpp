@@ -70,6 +70,11 @@ std::optional<JsonNode> JsonNode::find(const char* key) const {
   return found == value_->end() ? std::nullopt : std::optional(child(*found, key));
 }
 
+std::optional<JsonNode> JsonNode::extension(const char* name) const {
+  const std::optional<JsonNode> extensions = find("extensions");
+  return extensions ? extensions->find(name) : std::nullopt;
+}
+
 JsonNode JsonNode::at(const char* key) const {
   const std::optional<JsonNode> node = find(key);
   if (!node) {

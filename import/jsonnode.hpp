@@ -24,12 +24,14 @@ class JsonNode {
 
   [[nodiscard]] const std::string& pointer() const { return pointer_; }
   [[nodiscard]] bool isObject() const { return value_->is_object(); }
+  [[nodiscard]] bool isTrue() const { return value_->is_boolean() && value_->get<bool>(); }
   [[noreturn]] void fail(const std::string& message) const;
 
-  [[nodiscard]] std::optional<JsonNode> find(const char* key) const;    ///< of an object; empty: not there
-  [[nodiscard]] JsonNode at(const char* key) const;                     ///< of an object; has to be there
-  [[nodiscard]] std::size_t size() const;                               ///< of an array
-  [[nodiscard]] JsonNode operator[](std::size_t index) const;           ///< of an array, index < size()
+  [[nodiscard]] std::optional<JsonNode> find(const char* key) const;  ///< of an object; empty: not there
+  [[nodiscard]] std::optional<JsonNode> extension(const char* name) const;  ///< of a glTF object; likewise
+  [[nodiscard]] JsonNode at(const char* key) const;                         ///< of an object; has to be there
+  [[nodiscard]] std::size_t size() const;                                   ///< of an array
+  [[nodiscard]] JsonNode operator[](std::size_t index) const;               ///< of an array, index < size()
   [[nodiscard]] std::vector<JsonNode> elements(const char* key) const;  ///< of the array `key`; none: empty
 
   [[nodiscard]] double number() const;

@@ -19,15 +19,34 @@ constexpr double kDefaultReflectance = 0.5;
 constexpr double kAssumedTransmittance = 0.7;
 constexpr double kMaxGlassTransmittance = 0.95;  // two faces of n = 1.5 alone reflect 8 %
 
-constexpr auto kGlassWords = std::to_array<std::string_view>(
-    {"glass",          "glas",        "glazing",     "verre",       "vitrage",    "vitre",       "vidrio",
-     "vidro",          "vetro",       "pane",        "panes",       "windowpane", "windowglass", "scheibe",
-     "fensterscheibe", "glasscheibe", "fensterglas", "isolierglas", "verglasung", "ruit"});
+constexpr auto kGlassWords = std::to_array<std::string_view>({"glass",          "glas",
+                                                              "glazing",        "windowpane",
+                                                              "windowglass",    "pane",
+                                                              "panes",          "scheibe",
+                                                              "fensterscheibe", "glasscheibe",
+                                                              "fensterglas",    "isolierglas",
+                                                              "verbundglas",    "sicherheitsglas",
+                                                              "verglasung",     "verre",
+                                                              "vitre",          "vitrage",
+                                                              "vidrio",         "vidrios",
+                                                              "cristal",        "acristalamiento",
+                                                              "vidro",          "vidraça",
+                                                              "vetro",          "vetrata",
+                                                              "ruit",           "glasruit",
+                                                              "dubbelglas",     "fönsterglas",
+                                                              "vindusglass",    "lasi",
+                                                              "ikkunalasi",     "szkło",
+                                                              "szyba",          "sklo",
+                                                              "üveg",           "стекло",
+                                                              "Стекло",         "玻璃",
+                                                              "ガラス"});
 constexpr auto kOtherWords = std::to_array<std::string_view>(
-    {"frame",  "frames", "rahmen",  "cadre",   "marco",   "telaio",   "bar",    "bars",
-     "bead",   "gasket", "mullion", "transom", "rail",    "handle",   "holder", "wool",
-     "wolle",  "fiber",  "fibre",   "faser",   "tile",    "tiles",    "mosaic", "paint",
-     "fabric", "foam",   "cloth",   "mirror",  "spiegel", "spandrel", "opaque", "foamed"});
+    {"frame",   "frames",  "rahmen",  "cadre",    "marco",    "telaio", "kozijn", "kader",  "karm",
+     "rama",    "perfil",  "profil",  "profile",  "bar",      "bars",   "bead",   "gasket", "mullion",
+     "transom", "rail",    "handle",  "holder",   "block",    "blocks", "brick",  "wool",   "wolle",
+     "laine",   "lana",    "fiber",   "fibre",    "fibra",    "faser",  "tile",   "tiles",  "mosaic",
+     "mosaik",  "mosaico", "paint",   "fabric",   "foam",     "foamed", "cloth",  "mirror", "spiegel",
+     "miroir",  "espejo",  "espelho", "specchio", "spandrel", "opaque", "vase",   "bottle"});
 
 bool isLetter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c & '\x80') != 0;
@@ -121,6 +140,11 @@ Material materialOf(const DisplayMaterial& display, std::vector<Diagnosis>& diag
   material.glazing = isGlazing(display, diagnoses);
   if (!material.glazing) {
     material.reflectance = reflectanceOf(display, diagnoses);
+    material.mirrorsAsMatt = display.mirrors;
+    if (display.mirrors) {
+      addDiagnosis(diagnoses,
+                   {"C135", "what a metal or a mirror reflects counts as matt, in its colour", where});
+    }
     return material;
   }
   material.reflectance = glm::dvec3(0.0);

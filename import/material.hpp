@@ -21,6 +21,7 @@ struct DisplayMaterial {
   glm::dvec3 luminance_cd_m2{0.0};
   bool transparent = false;   ///< by alpha: marks glazing, says nothing of its transmittance
   bool statedOpaque = false;  ///< the file says in so many words that nothing shines through
+  bool mirrors = false;       ///< drawn as a metal or a mirror
 };
 
 /// The material for light. A colour above 0.9 becomes 0.9; a missing one 0.5; glazing reflects 0 here

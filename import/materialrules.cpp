@@ -48,6 +48,7 @@ void apply(const MaterialRule& rule, Material& material, std::vector<Diagnosis>&
   }
   if (rule.reflectance && !material.glazing) {
     material.reflectance = *rule.reflectance;
+    material.mirrorsAsMatt = false;  // the study knows what it is
   } else if (rule.reflectance) {
     addDiagnosis(diagnoses, {"C151",
                              "a reflectance stated of glazing is not used: it follows from the glass; state "

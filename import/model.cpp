@@ -33,6 +33,17 @@ void checkOptions(const ModelOptions& options) {
   }
 }
 
+/// What a model has instead of faces, for a message.
+std::string leftOutText(const Scene& scene) {
+  std::string text;
+  for (const Diagnosis& diagnosis : scene.diagnoses) {
+    if (diagnosis.code == "C110" || diagnosis.code == "C111" || diagnosis.code == "C134") {
+      text += (text.empty() ? ": " : ", ") + diagnosis.message + " (" + diagnosis.where + ")";
+    }
+  }
+  return text;
+}
+
 std::string lengthText(double metres) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.3g", metres);
@@ -77,11 +88,13 @@ double chooseUnit(const std::filesystem::path& file, const Format& format, const
 }
 
 void bringUpright(Scene& scene, const std::string& upAxis, double metres) {
+  const auto upright = [&](const glm::dvec3& v) { return upAxis == "y" ? glm::dvec3(v.x, -v.z, v.y) : v; };
   for (glm::dvec3& point : scene.points) {
-    if (upAxis == "y") {
-      point = {point.x, -point.z, point.y};
-    }
-    point *= metres;
+    point = upright(point) * metres;
+  }
+  for (PunctualLight& light : scene.lights) {
+    light.position_m = upright(light.position_m) * metres;
+    light.direction = upright(light.direction);
   }
 }
 
@@ -135,7 +148,8 @@ Scene readModel(const std::filesystem::path& file, const ModelOptions& options) 
   const Format format{isObj, isObj ? "z" : "y"};
   Scene scene = isObj ? readObj(file) : readGltf(file);
   if (scene.faces.size() == 0 && scene.cages.empty()) {
-    throw InputError(file.string() + ": there is no face in the model; check that the export has geometry");
+    throw InputError(file.string() + ": there is no face in the model" + leftOutText(scene) +
+                     "; check that the export has geometry");
   }
   const double metres = chooseUnit(file, format, options, scene);
   if (isObj && !options.upAxis && looksYUp(scene)) {

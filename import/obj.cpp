@@ -12,6 +12,7 @@
 #include "cage.hpp"
 #include "mtl.hpp"
 #include "objtag.hpp"
+#include "objtexture.hpp"
 #include "textfile.hpp"
 
 namespace clerestory {
@@ -23,9 +24,9 @@ constexpr double kMaxCoordinate = 1e12;
 constexpr double kUndefinedReflectance = 0.5;
 
 constexpr auto kIgnored = std::to_array<std::string_view>(
-    {"vt",         "vn",        "vp",     "s",      "mg",    "bevel", "c_interp", "d_interp", "lod",
-     "shadow_obj", "trace_obj", "usemap", "maplib", "ctech", "stech", "cstype",   "deg",      "bmat",
-     "step",       "parm",      "trim",   "hole",   "scrv",  "sp",    "end",      "con",      "off"});
+    {"vn",        "vp",     "s",      "mg",    "bevel", "c_interp", "d_interp", "lod",  "shadow_obj",
+     "trace_obj", "usemap", "maplib", "ctech", "stech", "cstype",   "deg",      "bmat", "step",
+     "parm",      "trim",   "hole",   "scrv",  "sp",    "end",      "con",      "off"});
 constexpr auto kNotFaces = std::to_array<std::string_view>({"p", "l", "curv", "curv2", "surf"});
 
 template <typename Words>
@@ -58,6 +59,8 @@ class ObjReader {
   void statement(std::string_view keyword) {
     if (keyword == "v") {
       vertex();
+    } else if (keyword == "vt") {
+      textureCoordinate();
     } else if (keyword == "f" || keyword == "fo") {
       face();
     } else if (keyword == "o" || keyword == "g") {
@@ -79,8 +82,14 @@ class ObjReader {
     addDiagnosis(scene_.diagnoses, {code, message, place_.text()});
   }
 
-  double number(std::string_view word) const {
-    const std::optional<double> value = parseNumber(word);
+  double number(std::string_view word) {
+    std::optional<double> value = parseNumber(word);
+    if (!value) {
+      value = parseCommaNumber(word);
+      if (value) {
+        diagnose("C114", "numbers with a decimal comma were read as such");
+      }
+    }
     if (!value || std::abs(*value) > kMaxCoordinate) {
       failAt(place_, "\"" + cleanName(word) + "\" is not a coordinate; write numbers like 0.5, within 1e12");
     }
@@ -101,8 +110,28 @@ class ObjReader {
     scene_.points.emplace_back(number(words_[1]), number(words_[2]), number(words_[3]));
   }
 
+  /// Only pictures need it: what is no number counts as 0.
+  void textureCoordinate() {
+    const auto value = [&](std::size_t i) {
+      const double number = i < words_.size() ? parseNumber(words_[i]).value_or(0.0) : 0.0;
+      return static_cast<float>(std::clamp(number, -1e9, 1e9));
+    };
+    if (coordinates_.values.size() < kMaxPoints) {
+      coordinates_.values.emplace_back(value(1), value(2));
+    }
+  }
+
+  /// The corner's `vt` for its place in the scene; what is out of range counts as none.
+  void addTextureCorner(std::string_view word) {
+    const auto size = static_cast<std::int64_t>(coordinates_.values.size());
+    const std::int64_t index = word.empty() ? 0 : parseInteger(word).value_or(0);
+    const bool isThere = index != 0 && index <= size && index >= -size;
+    textureCorners_.push_back(isThere ? static_cast<std::uint32_t>(index > 0 ? index - 1 : size + index)
+                                      : TextureCoordinates::kNone);
+  }
+
   /// The point that a corner `v`, `v/vt`, `v//vn` or `v/vt/vn` names; negative ones count from the last.
-  std::uint32_t corner(std::string_view word) const {
+  std::uint32_t corner(std::string_view word) {
     std::array<std::string_view, 3> parts;
     std::size_t count = 0;
     for (std::string_view rest = word; count < 3; ++count) {
@@ -128,11 +157,13 @@ class ObjReader {
       failAt(place_, "a face names vertex " + std::to_string(*index) + ", but " + std::to_string(size) +
                          " are given so far; indices begin at 1, or at -1 for the last");
     }
+    addTextureCorner(parts[1]);
     return static_cast<std::uint32_t>(*index > 0 ? *index - 1 : size + *index);
   }
 
   void face() {
     corners_.clear();
+    textureCorners_.clear();
     for (std::size_t i = 1; i < words_.size(); ++i) {
       corners_.push_back(corner(words_[i]));
     }
@@ -142,6 +173,10 @@ class ObjReader {
     }
     if (scene_.faces.corners.size() + corners_.size() > std::numeric_limits<std::uint32_t>::max()) {
       failAt(place_, "more than 2^32 corners of faces; split the model");
+    }
+    if (!coordinates_.values.empty()) {
+      coordinates_.corners.resize(scene_.faces.corners.size(), TextureCoordinates::kNone);
+      coordinates_.corners.insert(coordinates_.corners.end(), textureCorners_.begin(), textureCorners_.end());
     }
     scene_.faces.add(corners_);
     scene_.faceObject.push_back(object());
@@ -215,32 +250,39 @@ class ObjReader {
   }
 
   void resolveMaterials() {
+    std::vector<MtlMaterial> materials;
     for (const std::string& name : materialNames_) {
       auto found = library_.find(name);
       if (found == library_.end()) {
         found = library_.find(cleanName(name.substr(0, name.find(" #"))));
       }
-      DisplayMaterial display;
+      MtlMaterial material;
       if (found != library_.end()) {
-        display = found->second;
+        material = found->second;
       } else if (!name.empty()) {
         addDiagnosis(scene_.diagnoses,
                      {"C131", "materials that no library defines: reflectance 0.5, or glass by their name",
                       "material \"" + name + "\""});
-        display.color = glm::dvec3(kUndefinedReflectance);
+        material.display.color = glm::dvec3(kUndefinedReflectance);
       }
-      display.name = name.empty() ? "default" : name;
-      scene_.materials.push_back(materialOf(display, scene_.diagnoses));
+      material.display.name = name.empty() ? "default" : name;
+      materials.push_back(std::move(material));
+    }
+    applyTextures(materials, coordinates_, scene_);
+    for (const MtlMaterial& material : materials) {
+      scene_.materials.push_back(materialOf(material.display, scene_.diagnoses));
     }
   }
 
   std::filesystem::path folder_;
   Place place_;
   std::vector<std::string_view> words_;
-  std::string_view rest_;  // of the line, behind the keyword
-  std::vector<std::uint32_t> corners_;
+  std::string_view rest_;                      // of the line, behind the keyword
+  std::vector<std::uint32_t> corners_;         // of the face at hand
+  std::vector<std::uint32_t> textureCorners_;  // likewise
 
   Scene scene_;
+  TextureCoordinates coordinates_;
   std::string name_;
   std::optional<std::uint32_t> object_;
   std::map<std::uint32_t, Cage> tags_;  // by object
@@ -255,8 +297,8 @@ class ObjReader {
 }  // namespace
 
 Scene readObj(const std::filesystem::path& file) {
-  const std::string bytes = readWholeFile(file, "model", kMaxObjBytes);
-  return ObjReader(file).read(plainText(bytes, file.string()));
+  const std::string text = decodedText(readWholeFile(file, "model", kMaxObjBytes), file.string());
+  return ObjReader(file).read(text);
 }
 
 }  // namespace clerestory

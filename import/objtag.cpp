@@ -91,9 +91,10 @@ void addCorners(const TagValues& values, std::size_t points, const Place& place,
 
 void setBoundary(const TagValues& values, const Place& place, Cage& cage) {
   if (values.integers.size() != 1 || values.integers[0] > 2) {
-    failAt(place, "interpolateboundary is 0 (none), 1 (edges) or 2 (edges and corners)");
+    failAt(place, "interpolateboundary is 0 (none), 1 (edges and corners) or 2 (edges)");
   }
-  cage.boundary = static_cast<Cage::Boundary>(values.integers[0]);
+  cage.boundary = std::array{Cage::Boundary::none, Cage::Boundary::edgeAndCorner,
+                             Cage::Boundary::edgeOnly}[values.integers[0]];
 }
 
 }  // namespace

@@ -101,8 +101,8 @@ std::array<double, 6> pointOf(const std::vector<std::string>& fields, const Colu
 }  // namespace
 
 std::vector<std::array<double, 6>> readSensorPoints(const std::filesystem::path& file) {
-  const std::string bytes = readWholeFile(file, "points", kMaxBytes);
-  LineReader lines(plainText(bytes, file.string()));
+  const std::string text = decodedText(readWholeFile(file, "points", kMaxBytes), file.string());
+  LineReader lines(text);
   std::vector<std::array<double, 6>> points;
   std::optional<Columns> columns;
   while (lines.next()) {

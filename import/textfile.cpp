@@ -47,6 +47,51 @@ std::string readWholeFile(const std::filesystem::path& file, const std::string& 
   return bytes;
 }
 
+namespace {
+
+void appendUtf8(std::string& text, std::uint32_t code) {
+  const auto add = [&text](std::uint32_t byte) { text += static_cast<char>(byte); };
+  if (code < 0x80) {
+    add(code);
+  } else if (code < 0x800) {
+    add(0xC0U | (code >> 6U));
+    add(0x80U | (code & 0x3FU));
+  } else if (code < 0x10000) {
+    add(0xE0U | (code >> 12U));
+    add(0x80U | ((code >> 6U) & 0x3FU));
+    add(0x80U | (code & 0x3FU));
+  } else {
+    add(0xF0U | (code >> 18U));
+    add(0x80U | ((code >> 12U) & 0x3FU));
+    add(0x80U | ((code >> 6U) & 0x3FU));
+    add(0x80U | (code & 0x3FU));
+  }
+}
+
+/// UTF-16 behind its byte order mark; half a surrogate pair becomes U+FFFD.
+std::string fromUtf16(std::string_view bytes) {
+  const bool lowFirst = bytes[0] == '\xFF';
+  const auto unit = [&](std::size_t at) {
+    const auto first = static_cast<unsigned char>(bytes[at]);
+    const auto second = static_cast<unsigned char>(bytes[at + 1]);
+    return static_cast<std::uint32_t>(lowFirst ? first | second << 8U : first << 8U | second);
+  };
+  std::string text;
+  text.reserve(bytes.size() / 2);
+  for (std::size_t at = 2; at + 1 < bytes.size(); at += 2) {
+    std::uint32_t code = unit(at);
+    if ((code & 0xF800U) == 0xD800U) {
+      const bool isPair = code < 0xDC00U && at + 3 < bytes.size() && (unit(at + 2) & 0xFC00U) == 0xDC00U;
+      code = isPair ? 0x10000U + ((code & 0x3FFU) << 10U) + (unit(at + 2) & 0x3FFU) : 0xFFFDU;
+      at += isPair ? 2 : 0;
+    }
+    appendUtf8(text, code);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string_view plainText(std::string_view bytes, const std::string& file) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
     throw InputError(file + ": is UTF-16 text; save it as UTF-8");
@@ -57,6 +102,15 @@ std::string_view plainText(std::string_view bytes, const std::string& file) {
   if (bytes.find('\0') != std::string_view::npos) {
     throw InputError(file + ": holds zero bytes, so it is not a text file; check that its ending is right");
   }
+  return bytes;
+}
+
+std::string decodedText(std::string bytes, const std::string& file) {
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    bytes = fromUtf16(bytes);
+  }
+  const std::string_view text = plainText(bytes, file);
+  bytes.erase(0, bytes.size() - text.size());
   return bytes;
 }
 
@@ -138,10 +192,12 @@ std::optional<Value> parseWhole(std::string_view word) {
   word = withoutPlus(word);
   Value value{};
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) {
+  const bool isTiny = error == std::errc::result_out_of_range && word.size() < 64 &&
+                      word.find("e-") != std::string_view::npos;
+  if ((error != std::errc() && !isTiny) || end != word.data() + word.size()) {
     return std::nullopt;
   }
-  return value;
+  return value;  // 0 where it is too small for a double
 }
 
 }  // namespace
@@ -149,6 +205,16 @@ std::optional<Value> parseWhole(std::string_view word) {
 std::optional<double> parseNumber(std::string_view word) {
   const std::optional<double> value = parseWhole<double>(word);
   return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<double> parseCommaNumber(std::string_view word) {
+  const std::size_t comma = word.find(',');
+  if (comma == std::string_view::npos || word.find_first_of(".,", comma + 1) != std::string_view::npos) {
+    return std::nullopt;
+  }
+  std::string dotted(word);
+  dotted[comma] = '.';
+  return parseNumber(dotted);
 }
 
 std::optional<std::int64_t> parseInteger(std::string_view word) {

@@ -29,6 +29,8 @@ std::string readWholeFile(const std::filesystem::path& file, const std::string& 
 
 /// `bytes` without a UTF-8 byte order mark. Throws InputError for UTF-16 and for bytes that are no text.
 std::string_view plainText(std::string_view bytes, const std::string& file);
+/// The same, but UTF-16 behind its byte order mark becomes UTF-8.
+std::string decodedText(std::string bytes, const std::string& file);
 
 /// Logical lines of a text with LF, CRLF or CR ends; a line that ends in a backslash goes on in the next.
 class LineReader {
@@ -56,7 +58,10 @@ std::string_view trimmed(std::string_view text);
 std::string lowerCase(std::string_view text);  ///< ASCII only
 
 /// The whole of `word` as a finite number with a decimal point, whatever the locale; a leading + is allowed.
+/// What is too small for a double is 0.
 std::optional<double> parseNumber(std::string_view word);
+/// The same for a number with a decimal comma, as programs write it that follow their user's language.
+std::optional<double> parseCommaNumber(std::string_view word);
 std::optional<std::int64_t> parseInteger(std::string_view word);
 
 /// Shortest decimal text that reads back to the same double.

@@ -3,15 +3,18 @@
 #include "folder.hpp"
 
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <mutex>
 #include <system_error>
 
 #ifdef _WIN32
 #include <process.h>
 #else
 #include <fcntl.h>
+#include <signal.h>
 #include <unistd.h>
 #endif
 
@@ -33,6 +36,42 @@ int processId() {
 #else
   return getpid();
 #endif
+}
+
+/// Name of this machine, where it is known.
+std::string hostName() {
+#ifdef _WIN32
+  return "host";
+#else
+  char name[256] = "host";
+  if (gethostname(name, sizeof(name) - 1) != 0) return "host";
+  return name;
+#endif
+}
+
+/// Whether a process of this machine is certainly gone.
+bool isGone([[maybe_unused]] int process) {
+#ifdef _WIN32
+  return false;
+#else
+  return kill(process, 0) != 0 && errno == ESRCH;
+#endif
+}
+
+/// The folder that is being written, for the thread that ends the program in the middle of it.
+struct Unfinished {
+  std::mutex mutex;
+  fs::path folder;  ///< empty: none
+};
+
+Unfinished& unfinished() {
+  static Unfinished one;
+  return one;
+}
+
+void setUnfinished(const fs::path& folder) {
+  const std::lock_guard lock(unfinished().mutex);
+  unfinished().folder = folder;
 }
 
 bool startsAndEnds(const std::string& name, std::string_view start, std::string_view end) {
@@ -85,10 +124,14 @@ fs::path resolved(const fs::path& folder) {
   return path;
 }
 
-/// Makes a new empty folder `.NAME.partial-PID-n` beside `folder`.
+/// How the names of unfinished reports beside `folder` begin that this machine writes.
+std::string partialStart(const fs::path& folder) {
+  return "." + folder.filename().string() + ".partial-" + hostName() + "-";
+}
+
+/// Makes a new empty folder `.NAME.partial-HOST-PID-n` beside `folder`.
 fs::path makePartial(const fs::path& folder) {
-  const std::string start =
-      "." + folder.filename().string() + ".partial-" + std::to_string(processId()) + "-";
+  const std::string start = partialStart(folder) + std::to_string(processId()) + "-";
   for (int number = 0; number < 1000; ++number) {
     const fs::path partial = folder.parent_path() / (start + std::to_string(number));
     std::error_code failure;
@@ -101,6 +144,22 @@ fs::path makePartial(const fs::path& folder) {
   }
   throw InputError(folder.string() + ": too many unfinished reports beside it; remove those named " + start +
                    "*");
+}
+
+/// Removes what runs of this machine left beside `folder` that were killed before they could.
+void removeLeftovers(const fs::path& folder) {
+  const std::string start = partialStart(folder);
+  std::error_code ignored;
+  std::vector<fs::path> leftovers;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.parent_path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    int process = 0;
+    if (!name.starts_with(start)) continue;
+    const auto [end, error] = std::from_chars(name.data() + start.size(), name.data() + name.size(), process);
+    if (error == std::errc{} && *end == '-' && process > 0 && isGone(process))
+      leftovers.push_back(entry.path());
+  }
+  for (const fs::path& leftover : leftovers) fs::remove_all(leftover, ignored);
 }
 
 void checkResolved(const fs::path& folder) {
@@ -124,10 +183,11 @@ void checkResolved(const fs::path& folder) {
 
 /// Puts `partial` where `folder` is; afterwards `partial` is gone or holds the older report.
 void exchange(const fs::path& partial, const fs::path& folder) {
-  if (!fs::exists(folder)) {
-    fs::rename(partial, folder);
-    return;
-  }
+  // Nobody ends the program between two steps.
+  const std::lock_guard lock(unfinished().mutex);
+  std::error_code failure;
+  fs::rename(partial, folder, failure);
+  if (!failure) return;  // there was none, or an empty one
 #ifdef RENAME_EXCHANGE
   // One step of the file system: at no moment is there no report.
   if (renameat2(AT_FDCWD, partial.c_str(), AT_FDCWD, folder.c_str(), RENAME_EXCHANGE) == 0) return;
@@ -149,6 +209,7 @@ void checkReportFolder(const fs::path& folder) {
   try {
     const fs::path place = resolved(folder);
     checkResolved(place);
+    removeLeftovers(place);
     fs::remove(makePartial(place));  // only trying tells whether the file system lets us
   } catch (const fs::filesystem_error& error) {
     throw InputError(folder.string() + ": cannot be looked at: " + error.code().message());
@@ -157,23 +218,36 @@ void checkReportFolder(const fs::path& folder) {
 
 void writeBeside(const fs::path& folder, const std::function<void(const fs::path&)>& write) {
   fs::path partial;
+  const auto clear = [&partial] {
+    std::error_code ignored;  // that an older report lingers is no failure
+    if (!partial.empty()) fs::remove_all(partial, ignored);
+    setUnfinished({});
+  };
   try {
     const fs::path place = resolved(folder);
     checkResolved(place);
     partial = makePartial(place);
+    setUnfinished(partial);
     write(partial);
     exchange(partial, place);
   } catch (const fs::filesystem_error& error) {
-    std::error_code ignored;
-    if (!partial.empty()) fs::remove_all(partial, ignored);
+    clear();
     throw MachineError(folder.string() + ": the report could not be written: " + error.code().message());
   } catch (...) {
-    std::error_code ignored;
-    if (!partial.empty()) fs::remove_all(partial, ignored);
+    clear();
     throw;
   }
-  std::error_code ignored;  // the new report is in place: that an older one lingers is no failure
-  fs::remove_all(partial, ignored);
+  clear();
+}
+
+void abandonReport() {
+  unfinished().mutex.lock();  // for ever: what else writes waits for the end
+  const fs::path& partial = unfinished().folder;
+  std::error_code failure;
+  // Another thread may put a file into it meanwhile, but none once it is gone.
+  for (int attempt = 0; attempt < 100 && !partial.empty() && fs::exists(partial, failure); ++attempt) {
+    fs::remove_all(partial, failure);
+  }
 }
 
 void writeFile(const fs::path& file, std::string_view bytes) {

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exposes pictures, converts them for the display through OpenColorIO and writes files through OpenImageIO.
+// Exposes pictures, converts them for the display through OpenColorIO and writes them as files.
 #include "image.hpp"
 
 #include <OpenColorIO/OpenColorIO.h>
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-#include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +14,6 @@ namespace clerestory {
 namespace {
 
 namespace ocio = OCIO_NAMESPACE;
-namespace oiio = OIIO;
 
 constexpr double middleGrey = 0.18;
 constexpr double shoulder = 0.5;
@@ -98,15 +94,9 @@ ocio::ConstCPUProcessorRcPtr displayProcessor() {
   return makeConfig()->getProcessor(transform)->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
 }
 
-void writeImage(const std::filesystem::path& file, const oiio::ImageSpec& spec, oiio::TypeDesc type,
-                const void* pixels) {
-  const std::unique_ptr<oiio::ImageOutput> out = oiio::ImageOutput::create(file.string());
-  const bool written =
-      out && out->open(file.string(), spec) && out->write_image(type, pixels) && out->close();
-  if (!written) {
-    throw MachineError(file.filename().string() +
-                       ": the picture could not be written: " + (out ? out->geterror() : oiio::geterror()));
-  }
+void throwIf(const std::filesystem::path& file, const std::string& problem) {
+  if (!problem.empty())
+    throw MachineError(file.filename().string() + ": the picture could not be written: " + problem);
 }
 
 }  // namespace
@@ -182,48 +172,34 @@ DisplayImage displayImage(const LuminanceImage& image, double scale) {
 }
 
 void writeExr(const std::filesystem::path& file, const LuminanceImage& image, double scale) {
-  oiio::ImageSpec spec(image.width, image.height, 3, oiio::TypeDesc::HALF);
-  spec.attribute("compression", "zip");
-  spec.attribute("oiio:ColorSpace", "lin_srgb");
-  spec.attribute("Software", "Clerestory");
-  spec.attribute("DateTime",
-                 "2000:01:01 00:00:00");  // else the time of writing, and no two files are the same
-  const float chromaticities[8] = {0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
-  spec.attribute("chromaticities", oiio::TypeDesc(oiio::TypeDesc::FLOAT, 8), chromaticities);
-  spec.attribute("whiteLuminance", static_cast<float>(1.0 / scale));  // the name that OpenEXR knows
-  spec.attribute("clerestory:luminanceScale", static_cast<float>(1.0 / scale));
+  const PictureFiles::Attributes attributes = {
+      {"compression", "zip"},
+      {"oiio:ColorSpace", "lin_srgb"},
+      {"Software", "Clerestory"},
+      {"DateTime", "2000:01:01 00:00:00"},  // else the time of writing, and no two files are the same
+      {"chromaticities", std::vector<float>{0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F}},
+      {"whiteLuminance", static_cast<float>(1.0 / scale)},  // the name that OpenEXR knows
+      {"clerestory:luminanceScale", static_cast<float>(1.0 / scale)}};
   std::vector<float> values;
   values.reserve(image.pixels_cd_m2.size() * 3);
   for (const glm::vec3& pixel : image.pixels_cd_m2) {
     for (int c = 0; c < 3; ++c) values.push_back(exposed(pixel[c], scale));
   }
-  writeImage(file, spec, oiio::TypeDesc::FLOAT, values.data());
+  throwIf(file, pictureFiles().writeHalf(file, image.width, image.height, values.data(), attributes));
 }
 
 void writePng(const std::filesystem::path& file, const DisplayImage& image) {
-  oiio::ImageSpec spec(image.width, image.height, 3, oiio::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("Software", "Clerestory");
-  writeImage(file, spec, oiio::TypeDesc::UINT8, image.bytes.data());
+  throwIf(file, pictureFiles().writeBytes(file, image.width, image.height, image.bytes.data(),
+                                          {{"oiio:ColorSpace", "sRGB"}, {"Software", "Clerestory"}}));
 }
 
 void drawText(DisplayImage& image, int x, int y, const std::string& text, int size_px,
               const DisplayColour& colour, TextAlign align) {
-  using oiio::ImageBufAlgo::TextAlignX;
-  const TextAlignX alignX = align == TextAlign::left     ? TextAlignX::Left
-                            : align == TextAlign::centre ? TextAlignX::Center
-                                                         : TextAlignX::Right;
   std::string ascii;  // the renderer mangles anything else
   for (const char c : text) ascii += c >= ' ' && c <= '~' ? c : '?';
   const float values[3] = {static_cast<float>(colour[0]) / 255.0F, static_cast<float>(colour[1]) / 255.0F,
                            static_cast<float>(colour[2]) / 255.0F};
-  oiio::ImageBuf buffer(oiio::ImageSpec(image.width, image.height, 3, oiio::TypeDesc::UINT8),
-                        image.bytes.data());
-  const bool drawn =
-      oiio::ImageBufAlgo::render_text(buffer, x, y, ascii, size_px, "DejaVuSans", values, alignX,
-                                      oiio::ImageBufAlgo::TextAlignY::Baseline, 0, {}, 1);
-  if (!drawn)
-    (void)buffer.geterror();  // no font on this machine: a picture without numbers is still a picture
+  pictureFiles().drawText(image.bytes.data(), image.width, image.height, x, y, ascii, size_px, values, align);
 }
 
 }  // namespace clerestory

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures: exposure, display colours and files. The only place that knows OpenImageIO and OpenColorIO.
+// Pictures: exposure, display colours and files. The only place that knows OpenColorIO.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <import/picturefiles.hpp>
 #include <solver/solution.hpp>
 
 #include "colormap.hpp"
@@ -41,8 +42,6 @@ void writeExr(const std::filesystem::path& file, const LuminanceImage& image, do
 
 /// Throws MachineError.
 void writePng(const std::filesystem::path& file, const DisplayImage& image);
-
-enum class TextAlign { left, centre, right };
 
 /// Writes ASCII text around the baseline y; without the font the picture stays without it.
 void drawText(DisplayImage& image, int x, int y, const std::string& text, int size_px,

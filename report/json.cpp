@@ -150,6 +150,7 @@ Json materials(const CleanModel& model) {
     Json entry = {{"name", validUtf8(material.name)},
                   {"reflectance", colour(material.reflectance)},
                   {"exitance_lm_m2", colour(material.exitance_lm_m2)},
+                  {"mirrors_as_matt", material.mirrorsAsMatt},
                   {"glazing", material.glazing}};
     if (material.glazing) {
       entry["transmittance"] = colour(material.transmittance);

@@ -287,8 +287,10 @@ std::string materialsSection(const Page& page) {
           fixedNumber(luminousY(m.transmittance), 2) + (m.transmittanceIsAssumed ? " assumed" : "");
     }
     const double exitance_lm_m2 = luminousY(m.exitance_lm_m2);
-    rows.push_back({swatchHtml(m.reflectance) + escapeHtml(m.name), fixedNumber(luminousY(m.reflectance), 2),
-                    transmittance, m.glazing ? std::to_string(m.panes) : "",
+    const std::string reflectance = fixedNumber(luminousY(m.reflectance), 2) +
+                                    (m.mirrorsAsMatt ? " matt (drawn as metal or mirror)" : "");
+    rows.push_back({swatchHtml(m.reflectance) + escapeHtml(m.name), reflectance, transmittance,
+                    m.glazing ? std::to_string(m.panes) : "",
                     exitance_lm_m2 > 0.0 ? roundedNumber(exitance_lm_m2) : ""});
   }
   return sectionOpening("materials", "Materials") +

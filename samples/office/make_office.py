@@ -16,7 +16,7 @@ cd/m2; `Tf` = transmissionFactor = transmittance of the whole pane.
 Three objects are Catmull-Clark cages with semi-sharp creases.
 In the OBJ such an object carries OpenSubdiv's tags, where A, B and V are ZERO-based indices into the file's
 list of `v` lines (the `f` lines count from one, as always in OBJ):
-    t interpolateboundary 1/0/0 N      1: edge-only, 2: edge-and-corner
+    t interpolateboundary 1/0/0 N      1: edge-and-corner, 2: edge-only
     t crease 2/1/0 A B SHARPNESS
     t corner 1/1/0 V SHARPNESS
 In the GLB the mesh shows the triangulated cage, each point once, and its extras hold
@@ -779,7 +779,7 @@ def obj_text(office):
                 current = material
             lines.append("f " + " ".join(str(first + points[p] + 1) for p in polygon))
         if cage:
-            lines.append("t interpolateboundary 1/0/0 %d" % (1 if cage.boundary == "edge-only" else 2))
+            lines.append("t interpolateboundary 1/0/0 %d" % (2 if cage.boundary == "edge-only" else 1))
             lines += ["t crease 2/1/0 %d %d %g" % (first + a, first + b, sharpness) for a, b, sharpness in cage.creases]
             lines += ["t corner 1/1/0 %d %g" % (first + v, sharpness) for v, sharpness in cage.corners]
         first += len(points)

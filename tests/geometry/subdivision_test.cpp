@@ -208,6 +208,33 @@ TEST(Subdivision, BoundaryRules) {
   EXPECT_EQ(countOf(cleanScene(scene), "G211"), 0U);
 }
 
+TEST(Subdivision, FoldedFacesAreTakenAsDrawn) {
+  Scene scene = cubeCage(Cage::Scheme::catmark, 0.005);
+  Cage& cage = scene.cages[0];
+  const auto face = cage.faces[0];
+  PolygonList folded;  // one face of the cube and the same seen from its back: each corner has two faces
+  folded.add(face);
+  folded.add(std::vector(face.rbegin(), face.rend()));
+  cage.faces = folded;
+  const CleanModel model = cleanScene(scene);
+  EXPECT_EQ(countOf(model, "G213"), 1U);
+  EXPECT_GT(totalArea_m2(model), 0.99);
+}
+
+/// Three square sheets of one cage meet at an edge, which is a boundary of each.
+TEST(Subdivision, IsCutWhereThreeFacesMeet) {
+  Scene scene = Drawing().scene;
+  scene.points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 1}, {-1, 0, 0}, {-1, 0, 1}, {0, 1, 0}, {0, 1, 1}};
+  Cage cage;
+  for (const std::uint32_t side : {2U, 4U, 6U})
+    cage.faces.add(std::vector<std::uint32_t>{0, side, side + 1, 1});
+  cage.corners = {{0, 10.0F}, {1, 10.0F}};
+  scene.cages.push_back(cage);
+  const CleanModel model = cleanScene(scene);
+  EXPECT_TRUE(model.diagnoses.empty());
+  EXPECT_NEAR(totalArea_m2(model), 3.0, 1e-9) << "corners of a boundary stay";
+}
+
 TEST(Subdivision, IndicesOutOfRangeAreRefused) {
   Scene scene = cubeCage(Cage::Scheme::catmark, 0.005);
   scene.cages[0].creases.push_back({0, 99, 2.0F});

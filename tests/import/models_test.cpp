@@ -88,6 +88,41 @@ INSTANTIATE_TEST_SUITE_P(Of, Models, testing::ValuesIn(expectedModels()), [](con
   return name;
 });
 
+/// Models that have no faces, by their stems, and what is said of them.
+std::string expectedRefusal(const std::string& stem) {
+  if (stem == "invalid-face-definition") {
+    return "no face in the model: faces with fewer than three corners";
+  }
+  for (const std::string_view name :
+       {"line-prim", "points-prim", "Mesh_PrimitiveMode_00", "Mesh_PrimitiveMode_01", "Mesh_PrimitiveMode_02",
+        "Mesh_PrimitiveMode_03", "Mesh_PrimitiveMode_07", "Mesh_PrimitiveMode_08", "Mesh_PrimitiveMode_09",
+        "Mesh_PrimitiveMode_10"}) {
+    if (stem == name) {
+      return "no face in the model: points, lines";
+    }
+  }
+  return "";
+}
+
+TEST(AllModels, LoadOrAreRefusedForTheirReason) {
+  if (std::string(CLERESTORY_MODELS).empty()) {
+    GTEST_SKIP() << "CLERESTORY_MODELS is not set";
+  }
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(CLERESTORY_MODELS)) {
+    const std::string ending = entry.path().extension().string();
+    if (ending != ".obj" && ending != ".gltf" && ending != ".glb") {
+      continue;
+    }
+    ++count;
+    const std::string expected = expectedRefusal(entry.path().stem().string());
+    const std::string message = inputErrorOf([&] { readModel(entry.path(), {}); });
+    EXPECT_EQ(message.empty(), expected.empty()) << entry.path() << ": " << message;
+    EXPECT_TRUE(contains(message, expected)) << message;
+  }
+  EXPECT_GT(count, 60U);
+}
+
 struct ExpectedCage {
   std::string file;
   std::size_t faces, creases, corners, holes;

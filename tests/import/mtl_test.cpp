@@ -61,11 +61,13 @@ TEST(Mtl, LetsDissolveStandOverTransparency) {
 
 TEST(Mtl, KnowsGlassByName) {
   for (const char* name : {"Glass", "glas", "Glazing_01", "windowGlass", "Verre clair", "vidrio", "Vetro",
-                           "pane 3", "Fensterscheibe", "GLASS"}) {
+                           "pane 3", "Fensterscheibe", "GLASS", "vidro_temperado", "Cristal-6mm",
+                           "dubbelglas", "Sklo 4", "szyba", "Стекло", "стекло_01", "玻璃", "ガラス 2"}) {
     EXPECT_TRUE(materialFrom("Kd 0.5 0.5 0.5\n", name).glazing) << name;
   }
   for (const char* name : {"fibreglass", "FiberGlass", "glasswool", "glass wool", "glass frame", "panel",
-                           "Glasgow", "windowframe", "spyglasses", "mirror glass"}) {
+                           "Glasgow", "windowframe", "spyglasses", "mirror glass", "laine de verre",
+                           "lana di vetro", "Glass Block", "marco de vidrio", "camera", "стеклопластик"}) {
     EXPECT_FALSE(materialFrom("Kd 0.5 0.5 0.5\n", name).glazing) << name;
   }
 }
@@ -132,9 +134,21 @@ TEST(Mtl, ReadsSeveralLibrariesAndNamesWithBlanks) {
 }
 
 TEST(Mtl, SaysWhatItCannotRead) {
-  const Scene scene = readMaterial("m", "newmtl m\nKd 0,5 0,5 0,5\nmap_Kd wood.png\nKe spectral x.rfl\n");
+  const Scene scene = readMaterial("m", "newmtl m\nKd xyz 1 1 1\nmap_Kd wood.png\nKe spectral x.rfl\n");
   EXPECT_EQ(countOf(scene.diagnoses, "C126"), 1U);
   EXPECT_EQ(countOf(scene.diagnoses, "C127"), 2U);
+}
+
+TEST(Mtl, ReadsDecimalCommas) {
+  const Scene scene = readMaterial("m", "newmtl m\nKd 0,25 0,5 0,75\n");
+  EXPECT_EQ(scene.materials[0].reflectance, glm::dvec3(0.25, 0.5, 0.75));
+  EXPECT_EQ(countOf(scene.diagnoses, "C114"), 3U);
+}
+
+TEST(Mtl, SaysWhereAMirrorCountsAsMatt) {
+  const Scene scene = readMaterial("m", "newmtl m\nKd 0.5 0.5 0.5\nillum 3\n");
+  EXPECT_TRUE(scene.materials[0].mirrorsAsMatt);
+  EXPECT_EQ(countOf(scene.diagnoses, "C135"), 1U);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ TEST(Obj, ReadsCommentsAndUnusualNumbers) {
 }
 
 TEST(Obj, NamesFileAndLineOfABadNumber) {
-  for (const std::string bad : {"0,5", "nan", "inf", "1e999", "1.5m", "--1", "0x1"}) {
+  for (const std::string bad : {"0,5,5", "1.000,5", "nan", "inf", "1e999", "1.5m", "--1", "0x1"}) {
     const std::string message = errorOfText("v 0 0 0\nv 1 0 0\nv 0 " + bad + " 0\nf 1 2 3\n");
     EXPECT_TRUE(contains(message, "room.obj:3: \"" + bad + "\"")) << message;
   }
@@ -96,8 +96,45 @@ TEST(Obj, MakesNamesPrintable) {
   EXPECT_EQ(scene.materials[0].name, "W\xC3\xA4nde");
 }
 
+/// UTF-16 with its byte order mark, of text that is ASCII.
+std::string utf16(const std::string& ascii, bool lowFirst) {
+  std::string bytes = lowFirst ? "\xFF\xFE" : "\xFE\xFF";
+  for (const char c : ascii) {
+    bytes += lowFirst ? std::string{c, '\0'} : std::string{'\0', c};
+  }
+  return bytes;
+}
+
+TEST(Obj, ReadsUtf16) {
+  for (const bool lowFirst : {true, false}) {
+    const Scene scene = readText(utf16(kSquare + "o hall\nf 1 2 3 4\n", lowFirst));
+    EXPECT_EQ(corners(scene, 0).size(), 4U);
+    EXPECT_EQ(scene.objects[0], "hall");
+  }
+  const std::string name("\xE4\0 \0\x3D\xD8\xE0\xDE \0\x00\xD8",
+                         12);  // a umlaut, a door beyond 16 bits, half a pair
+  const Scene scene = readText(utf16(kSquare + "o ", true) + name + utf16("\nf 1 2 3\n", true).substr(2));
+  EXPECT_EQ(scene.objects[0], "\xC3\xA4 \xF0\x9F\x9B\xA0 \xEF\xBF\xBD");
+}
+
+TEST(Obj, ReadsNumbersAsOtherProgramsPrintThem) {
+  const Scene scene = readText("v 0,5 1e-400 1.5e+003\nv 1 -0 .0\nv 0 1. +1\nf 1 2 3\n");
+  EXPECT_EQ(scene.points[0], glm::dvec3(0.5, 0.0, 1500.0));
+  EXPECT_EQ(countOf(scene.diagnoses, "C114"), 1U);
+}
+
+TEST(Obj, ReadsPolygonsOfThousandsOfCorners) {
+  std::string text;
+  std::string face = "f";
+  for (int i = 0; i < 5000; ++i) {
+    text += "v " + std::to_string(i) + " " + std::to_string(i % 2) + " 0\n";
+    face += " " + std::to_string(i + 1);
+  }
+  EXPECT_EQ(corners(readText(text + face + "\n"), 0).size(), 5000U);
+}
+
 TEST(Obj, RefusesWhatIsNoText) {
-  EXPECT_TRUE(contains(errorOfText(std::string("\xFF\xFEv\0 \0", 6)), "UTF-16"));
+  EXPECT_TRUE(contains(errorOfText(std::string("\xFF\xFEv\0 \0\0\0", 8)), "not a text file"));
   EXPECT_TRUE(contains(errorOfText(std::string("v 0 0 \0 0\n", 10)), "not a text file"));
   EXPECT_TRUE(contains(errorOfText(""), "no face"));
   EXPECT_TRUE(contains(errorOfText(kSquare), "no face"));
@@ -126,7 +163,7 @@ TEST(Obj, ReadsTagsAsACage) {
   const Scene scene = readText(kSquare +
                                "v 0 0 2\nv 4 0 2\no plain\nf 1 2 3 4\no soft\nf 1 2 3 4\nf 1 2 6 5\n"
                                "t crease 3/2/0 0 1 2 1.5 12\nt crease 2/1/0 0 2 9\nt corner 1/1/0 4 3\n"
-                               "t interpolateboundary 1/0/0 1\nt hole 1/0/0 1\n");
+                               "t interpolateboundary 1/0/0 2\nt hole 1/0/0 1\n");
   ASSERT_EQ(scene.cages.size(), 1U);
   EXPECT_EQ(scene.faces.size(), 1U);
   const Cage& cage = scene.cages[0];

@@ -27,6 +27,7 @@ struct Material {
   std::string name;
   glm::dvec3 reflectance{0.5};  ///< diffuse, [0, 1)
   glm::dvec3 exitance_lm_m2{0.0};
+  bool mirrorsAsMatt = false;  ///< drawn as a metal or a mirror: what it reflects counts as diffuse
   bool glazing = false;
   glm::dvec3 transmittance{0.7};        ///< glazing: visible, normal incidence, of the whole pane unit [0, 1]
   bool transmittanceIsAssumed = false;  ///< nothing stated it
@@ -75,6 +76,20 @@ struct Cage {
   double tolerance_m = 0.005;  ///< chord error of the tessellation
 };
 
+/// A lamp without extent that a model holds (KHR_lights_punctual), placed.
+struct PunctualLight {
+  enum class Kind { point, spot, directional };
+  std::string name;
+  Kind kind = Kind::point;
+  glm::dvec3 position_m{0.0};            ///< of point and spot
+  glm::dvec3 direction{0.0, 0.0, -1.0};  ///< unit vector along which spot and directional shine
+  /// Linear Rec.709: candela of point and spot (of a spot along its axis), lux across the beam of
+  /// directional.
+  glm::dvec3 intensity{1.0};
+  double innerCone_rad = 0.0;  ///< spot: full intensity up to this angle from the axis,
+  double outerCone_rad = 0.0;  ///< none from this one on
+};
+
 /// One model. Coordinates are metres, z up, from the model's own origin.
 struct Scene {
   std::vector<glm::dvec3> points;
@@ -84,6 +99,7 @@ struct Scene {
   std::vector<Cage> cages;
   std::vector<Material> materials;
   std::vector<std::string> objects;  ///< object or group names
+  std::vector<PunctualLight> lights;
   std::vector<Diagnosis> diagnoses;
 };
 

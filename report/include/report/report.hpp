@@ -39,6 +39,10 @@ void writeReport(const std::filesystem::path& folder, const ReportInput& input);
 /// Checks, before any work is done, that a report can be put at `folder`. Throws InputError.
 void checkReportFolder(const std::filesystem::path& folder);
 
+/// Removes what an unfinished writeReport has written so far and lets none finish any more, for a thread that
+/// is about to end the program. An older report stays as it is.
+void abandonReport();
+
 /// study.json's text.
 std::string studyJson(const ReportInput& input);
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Loads the library of picture files, which lies beside the program or where it is installed.
+#include <import/picturefiles.hpp>
+
+#ifdef _WIN32
+#include <windows.h>
+#else
+#include <dlfcn.h>
+#endif
+
+#include <import/error.hpp>
+
+namespace clerestory {
+namespace {
+
+using Entry = const PictureFiles* (*)();
+constexpr const char* kEntry = "clerestoryPictureFiles";
+
+#ifdef _WIN32
+
+Entry load() {
+  const HMODULE library = LoadLibraryA(CLERESTORY_PICTURES);  // looks in the program's folder first
+  return library == nullptr ? nullptr : reinterpret_cast<Entry>(GetProcAddress(library, kEntry));
+}
+
+std::string whyNot() {
+  return "error " + std::to_string(GetLastError());
+}
+
+#else
+
+Entry load() {
+  void* const library =
+      dlopen(CLERESTORY_PICTURES, RTLD_NOW | RTLD_LOCAL);  // looks in the program's run path
+  return library == nullptr ? nullptr : reinterpret_cast<Entry>(dlsym(library, kEntry));
+}
+
+std::string whyNot() {
+  const char* const error = dlerror();
+  return error == nullptr ? "" : error;
+}
+
+#endif
+
+}  // namespace
+
+const PictureFiles& pictureFiles() {
+  static const Entry entry = load();  // never unloaded: OpenImageIO keeps threads and caches
+  if (entry == nullptr) {
+    throw MachineError("the library for pictures cannot be loaded: " + whyNot() +
+                       "; install the program again, or leave pictures out");
+  }
+  return *entry();
+}
+
+}  // namespace clerestory
