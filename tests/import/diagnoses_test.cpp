@@ -2,6 +2,7 @@
 // Every diagnosis of reading: a small file that is named for it gives it, and a page lists it.
 #include <set>
 
+#include <import/photometry.hpp>
 #include <import/scene.hpp>
 #include <import/study.hpp>
 
@@ -15,7 +16,7 @@ std::vector<std::filesystem::path> fixtures() {
   const auto folder = std::filesystem::path(CLERESTORY_TEST_DATA) / "diagnoses";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string ending = entry.path().extension().string();
-    const bool isRead = ending == ".obj" || ending == ".gltf" || ending == ".glb" || ending == ".toml";
+    const bool isRead = ending == ".obj" || ending == ".gltf" || ending == ".toml" || ending == ".ldt";
     if (isRead && entry.path().filename().string().starts_with("C1")) {
       files.push_back(entry.path());
     }
@@ -28,15 +29,23 @@ std::string codeOf(const std::filesystem::path& file) {
   return file.filename().string().substr(0, 4);
 }
 
+std::vector<Diagnosis> diagnosesOf(const std::filesystem::path& file) {
+  if (file.extension() == ".ldt") {
+    return readPhotometry(file).diagnoses;
+  }
+  const Study study = file.extension() == ".toml" ? readStudy(file) : studyOfModel(file);
+  Scene scene = readModel(study.modelFile, study.model);
+  applyMaterialRules(study, scene);
+  return scene.diagnoses;
+}
+
 class Diagnoses : public testing::TestWithParam<std::filesystem::path> {};
 
 TEST_P(Diagnoses, AreMadeByTheirFile) {
   const std::filesystem::path& file = GetParam();
-  const Study study = file.extension() == ".toml" ? readStudy(file) : studyOfModel(file);
-  Scene scene = readModel(study.modelFile, study.model);
-  applyMaterialRules(study, scene);
-  EXPECT_GE(countOf(scene.diagnoses, codeOf(file)), 1U);
-  for (const Diagnosis& diagnosis : scene.diagnoses) {
+  const std::vector<Diagnosis> diagnoses = diagnosesOf(file);
+  EXPECT_GE(countOf(diagnoses, codeOf(file)), 1U);
+  for (const Diagnosis& diagnosis : diagnoses) {
     EXPECT_NE(diagnosis.where, "") << diagnosis.code << ' ' << diagnosis.message;
   }
 }
