@@ -5,7 +5,7 @@
   docs/make_cie171.py build/release/clerestory tests/data/cie171/cie171-5.9-5.14.csv [--accuracy standard 1%]
 
 The room of the cases is written as an OBJ: 4 x 4 x 3 m, black walls without thickness. Errors are shares of the
-recomputed values; a difference of 0.02 in the table's own unit, per cent of the horizontal illuminance, is none.
+recomputed values, which are per cent of the horizontal illuminance.
 """
 import argparse
 import csv
@@ -107,7 +107,7 @@ def main():
         cells = []
         for accuracy in given.accuracy:
             ours = percents(program, case, sky, len(truth), ceiling, accuracy)
-            errors = [0.0 if abs(a - b) <= 0.02 else 100 * (a - b) / b for a, b in zip(ours, truth)]
+            errors = [100 * (a - b) / b for a, b in zip(ours, truth)]
             cells += [f"{math.sqrt(sum(e * e for e in errors) / len(errors)):.2f}", f"{max(map(abs, errors)):.2f}"]
         print(f"| {case.replace('_', ', ')}{', ceiling' if ceiling else ''} | {'any' if ceiling else sky} | "
               f"{len(truth)} | " + " | ".join(cells) + " |", flush=True)

@@ -92,7 +92,8 @@ Json gridJson(const ReportInput& input, std::size_t g) {
                {"sensors", m.sensors},
                {"spacing_m", number(input.building.grids[g].spacing_m)},
                {"illuminance_lx", distribution(m.illuminance_lx)},
-               {"uniformity", number(m.uniformity)}};
+               {"uniformity", number(m.uniformity)},
+               {"share_of_sensors_300_to_3000_lx_pct", number(m.share300To3000_pct)}};
   if (m.daylightFactor_pct) {
     grid["daylight_factor_pct"] = distribution(*m.daylightFactor_pct);
     grid["share_of_sensors_above_2_pct"] = number(m.shareAbove2_pct);
@@ -112,12 +113,18 @@ Json rooms(const ReportInput& input) {
   Json list = Json::array();
   for (std::size_t r = 0; r < input.building.rooms.size(); ++r) {
     const Room& room = input.building.rooms[r];
-    list.push_back({{"name", validUtf8(room.name)},
-                    {"domain", room.domain},
-                    {"floor_area_m2", number(room.floorArea_m2)},
-                    {"volume_m3", number(room.volume_m3)},
-                    {"floor_m", number(room.floor_m)},
-                    {"grids", gridsJson(input, static_cast<std::int32_t>(r))}});
+    Json entry = {{"name", validUtf8(room.name)},
+                  {"domain", room.domain},
+                  {"floor_area_m2", number(room.floorArea_m2)},
+                  {"volume_m3", number(room.volume_m3)},
+                  {"floor_m", number(room.floor_m)}};
+    if (r < input.solution.rooms.size()) {
+      entry["average_daylight_factor_formula_pct"] =
+          number(input.solution.rooms[r].averageDaylightFactor_pct);
+      entry["sunlight_21_march_h"] = number(input.solution.rooms[r].sunlight_h);
+    }
+    entry["grids"] = gridsJson(input, static_cast<std::int32_t>(r));
+    list.push_back(entry);
   }
   return list;
 }

@@ -17,6 +17,13 @@ double shareAtLeast_pct(const std::vector<double>& values, double threshold) {
   return 100.0 * static_cast<double>(count) / static_cast<double>(values.size());
 }
 
+double shareBetween_pct(const std::vector<double>& values, double low, double high) {
+  if (values.empty()) return 0.0;
+  const auto count =
+      std::count_if(values.begin(), values.end(), [&](double v) { return v >= low && v <= high; });
+  return 100.0 * static_cast<double>(count) / static_cast<double>(values.size());
+}
+
 std::vector<double> daylightFactors_pct(const GridValues& grid, const SkySettings& sky) {
   std::vector<double> factors;
   for (const SensorValue& sensor : grid.sensors)
@@ -77,6 +84,7 @@ GridMetrics metricsOf(const GridValues& grid, const SkySettings& sky) {
 
   GridMetrics metrics;
   metrics.sensors = grid.sensors.size();
+  metrics.share300To3000_pct = shareBetween_pct(illuminances, 300.0, 3000.0);
   metrics.illuminance_lx = distributionOf(std::move(illuminances));
   const double mean_lx = metrics.illuminance_lx.mean;
   metrics.uniformity = mean_lx > 0.0 ? metrics.illuminance_lx.min / mean_lx : 0.0;

@@ -32,6 +32,7 @@ struct GridMetrics {
   Distribution illuminance_lx;
   double uniformity = 0.0;                         ///< least over mean
   std::optional<Distribution> daylightFactor_pct;  ///< empty under a sky without one
+  double share300To3000_pct = 0.0;                 ///< sensors from 300 to 3,000 lx
   double shareAbove2_pct = 0.0;                    ///< sensors whose daylight factor is 2 % or more
   double meanErrorEstimate_pct = 0.0;              ///< of error_lx over max(value, 5 % of the mean)
   double p95ErrorEstimate_pct = 0.0;

@@ -34,8 +34,12 @@ void addRoomRow(std::string& table, const ReportInput& input, std::int32_t room,
   const std::string name = csvText(roomName(input.building, room));
   const std::string floorArea = known ? shortestFloat(known->floorArea_m2) : "";
   const std::string volume = known ? shortestFloat(known->volume_m3) : "";
+  const bool isMeasured = isRoom && static_cast<std::size_t>(room) < input.solution.rooms.size();
+  const RoomValue* const value = isMeasured ? &input.solution.rooms[static_cast<std::size_t>(room)] : nullptr;
+  const std::string formula = value ? shortestFloat(value->averageDaylightFactor_pct) : "";
+  const std::string sunlight = value ? shortestFloat(value->sunlight_h) : "";
   if (!grid) {
-    addRow(table, {name, floorArea, volume, "", "0", "", "", "", "", "", "", ""});
+    addRow(table, {name, floorArea, volume, "", "0", "", "", "", "", "", "", "", "", "", formula, sunlight});
     return;
   }
   const GridMetrics m = metricsOf(input.solution.grids.at(*grid), input.study.sky);
@@ -47,7 +51,8 @@ void addRoomRow(std::string& table, const ReportInput& input, std::int32_t room,
   addRow(table,
          {name, floorArea, volume, csvText(input.building.grids[*grid].name), std::to_string(m.sensors),
           shortestFloat(lx.mean), shortestFloat(lx.median), shortestFloat(lx.min),
-          shortestFloat(m.uniformity), factor(df.mean), factor(df.median), factor(df.min)});
+          shortestFloat(m.uniformity), factor(df.mean), factor(df.median), factor(df.min),
+          factor(m.shareAbove2_pct), shortestFloat(m.share300To3000_pct), formula, sunlight});
 }
 
 }  // namespace
@@ -107,7 +112,9 @@ std::string roomsCsv(const ReportInput& input) {
   std::string table =
       "room,floor_area_m2,volume_m3,grid,sensors,illuminance_mean_lx,illuminance_median_lx,illuminance_min_"
       "lx,"
-      "uniformity,daylight_factor_mean_pct,daylight_factor_median_pct,daylight_factor_min_pct\r\n";
+      "uniformity,daylight_factor_mean_pct,daylight_factor_median_pct,daylight_factor_min_pct,daylight_"
+      "factor_above_2_"
+      "pct,illuminance_300_3000_pct,average_daylight_factor_formula_pct,sunlight_21_march_h\r\n";
   const auto rooms = static_cast<std::int32_t>(input.building.rooms.size());
   for (std::int32_t room = 0; room < rooms; ++room) {
     const std::vector<std::size_t> grids = gridsOfRoom(input.building, room);

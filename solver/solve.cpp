@@ -9,6 +9,7 @@
 
 #include "outside.hpp"
 #include "reconstruction.hpp"
+#include "rooms.hpp"
 #include "sensors.hpp"
 #include "shooting.hpp"
 #include "surfaces.hpp"
@@ -107,6 +108,7 @@ Solution solveColumns(const World& world, const Study& study, const SolveOptions
     solution.grids.push_back(senseGrid(light, grids[i], tuning.sensors, tuning.solverError));
   }
   solution.surfaces = measureSurfaces(light, tuning.solverError);
+  solution.rooms = measureRooms(world, study);
   if (options.pictures) {
     for (std::size_t i = 0; i < study.views.size(); ++i) {
       report(options, "pictures", static_cast<double>(i) / static_cast<double>(study.views.size()));

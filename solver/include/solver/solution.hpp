@@ -36,6 +36,12 @@ struct SurfaceValue {
   std::uint32_t elements = 0;
 };
 
+/// Checks of a room beside its sensors (docs/measures.md). Zero in a room that is open to the outside.
+struct RoomValue {
+  double averageDaylightFactor_pct = 0.0;  ///< by Crisp and Littlefair's formula
+  double sunlight_h = 0.0;                 ///< on 21 March, at the best of its panes
+};
+
 /// One row of iterations.csv; the columns are those of the paper's Tables 1 and 2.
 struct IterationStatistics {
   std::int32_t domain = 0;
@@ -63,6 +69,7 @@ struct LuminanceImage {
 struct Solution {
   std::vector<GridValues> grids;  ///< in the order of Building::grids
   std::vector<SurfaceValue> surfaces;
+  std::vector<RoomValue> rooms;  ///< in the order of Building::rooms
   std::vector<IterationStatistics> iterations;
   std::vector<EnergyBalance> balances;
   std::vector<LuminanceImage> views;  ///< in the order of Study::views; empty without pictures
