@@ -176,7 +176,7 @@ class Viewer {
     this.camera = new PerspectiveCamera(45, 1, radius / 500, radius * 12);
     this.camera.up.set(0, 0, 1);
     const middle = this.size.clone().multiplyScalar(0.5);
-    this.camera.position.copy(middle).addScaledVector(new Vector3(-0.75, -1.1, 0.95).normalize(), 2.1 * radius);
+    this.camera.position.copy(middle).addScaledVector(new Vector3(-0.75, -1.1, 0.95).normalize(), 2.35 * radius);
     this.camera.lookAt(middle);
   }
 
