@@ -23,7 +23,7 @@ SensorLattice latticeOf(const SensorGrid& grid, double cell_m) {
   }
   const double columns = std::round((highX - lowX) / cell_m) + 1.0;
   const double rows = std::round((highY - lowY) / cell_m) + 1.0;
-  if (!(columns * rows <= mostPlaces)) return {};
+  if (grid.points.empty() || !(columns * rows <= mostPlaces)) return {};
   SensorLattice lattice{static_cast<std::size_t>(columns), static_cast<std::size_t>(rows), {}};
   lattice.sensors.assign(lattice.columns * lattice.rows, SensorLattice::none);
   for (std::size_t s = 0; s < grid.points.size(); ++s) {

@@ -135,7 +135,7 @@ svg .off{display:none}
 @media (max-width:900px){.first{grid-template-columns:minmax(0,1fr);gap:20px}}
 @media (max-width:640px){main,header,footer{padding-left:20px;padding-right:20px}header{padding-top:40px}
 h1{font-size:2rem}section{margin:56px 0}}
-@page{size:A4;margin:17mm 16mm 18mm}
+@page{margin:17mm 16mm 18mm}
 @media print{:root:root:root{color-scheme:light;--paper:#fff;--ink:#000;--soft:#55524d;--line:#d5d1ca;--tint:#f5f3ef;--accent:#8a4f0c;
 --wall:#8b867d;--floor:#eeebe4;--glass:#3f93c4;--yes:#1f6b3a;--no:#a3261b}
 *{-webkit-print-color-adjust:exact;print-color-adjust:exact}
@@ -143,7 +143,7 @@ body{font-size:10pt}main,header,footer{max-width:none;padding:0}header{padding-t
 section{margin:12mm 0 0;padding-top:6mm}
 .room,.break{break-before:page;margin-top:0;padding-top:0;border-top:0}
 h2,h3,caption{break-after:avoid}figure,dl.figures,tr,li,pre{break-inside:avoid}
-thead{display:table-header-group}.table{overflow:visible;margin:7mm 0}
+thead{display:table-header-group;break-inside:avoid}th,td{overflow-wrap:break-word!important}tr.chosen th,tr.chosen td{background:none}.plan .sensors rect.chosen{stroke:none}.table{overflow:visible;margin:7mm 0}
 .filter,.fold,.switches,.readout,.exposure,.theme,.screen{display:none!important}
 .first{grid-template-columns:1fr;gap:5mm}.first img{max-height:95mm;width:auto;max-width:100%}tr.more{display:none}th[aria-sort] .sort::after{content:""}
 table{font-size:8.6pt}dl.figures{grid-template-columns:repeat(4,1fr);gap:5mm 6mm}dl.figures dd{font-size:15pt}

@@ -27,10 +27,11 @@ void drawElement(const ColumnLayout& layout, const Radiosity<K>& radiosity, Node
   for (std::size_t i = 2; i < polygon.size(); ++i) {
     turn += glm::cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
   }
+  const Columns<K> sunlight_lx = radiosity.sunlightOf(layout, leaf);
   const bool turned = glm::dot(turn, tree.normal(leaf)) < 0.0F;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const glm::vec3& corner = polygon[turned ? polygon.size() - 1 - i : i];
-    const Columns<K> irradiance_lx = radiosity.irradianceAt(leaf, corner);
+    const Columns<K> irradiance_lx = radiosity.irradianceAt(leaf, corner) + sunlight_lx;
     mesh.corners_m.push_back(corner);
     mesh.illuminance_lx.push_back(static_cast<float>(luminanceOf(layout.totalColour(irradiance_lx))));
     mesh.exitance_lm_m2.emplace_back(

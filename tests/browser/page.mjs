@@ -182,11 +182,17 @@ try {
     }
   });
 
-  await step("it prints to PDF", async () => {
-    const pdf = await page.pdf({ format: "A4", printBackground: true, preferCSSPageSize: true,
-                                 path: pictures && path.join(pictures, "page.pdf") });
-    assert.ok(pdf.length > 20_000);
-    assert.equal(pdf.subarray(0, 5).toString(), "%PDF-");
+  await step("it prints to PDF, A4 and A3", async () => {
+    for (const format of ["A4", "A3"]) {
+      const pdf = await page.pdf({
+        format,
+        printBackground: true,
+        preferCSSPageSize: true,
+        path: pictures && path.join(pictures, `${format}.pdf`),
+      });
+      assert.ok(pdf.length > 20_000);
+      assert.equal(pdf.subarray(0, 5).toString(), "%PDF-");
+    }
   });
 
   if (pictures) {
