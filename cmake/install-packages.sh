@@ -19,6 +19,9 @@ for package in "${packages[@]}"; do
     missing+=("$package")
   fi
 done
+# Another vendor's Node.js brings its npm along, and Debian's would conflict with it.
+command -v node >/dev/null || missing+=(nodejs)
+command -v npm >/dev/null || missing+=(npm)
 if [ ${#missing[@]} -eq 0 ]; then
   exit 0
 fi

@@ -19,7 +19,7 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t mostSurfaceRows = 24;  // in a room's table; the rest is in surfaces.csv
+constexpr std::size_t mostSurfaceRows = 16;  // of a room's table before the reader asks for more
 
 /// What all sections need, made once.
 struct Page {
@@ -50,11 +50,12 @@ std::string skyText(const Study& study) {
   return sky;
 }
 
-std::string headHtml(const std::string& title) {
+std::string headHtml(const ReportInput& input, const std::string& title) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
-         "style-src "
-         "'unsafe-inline'\">\n"
+         "style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; " +
+         scriptPolicy(input) +
+         "\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
          "<meta name=\"referrer\" content=\"no-referrer\">\n<title>" +
          title + " – daylight study</title>\n<style>" + pageStyle + "</style>\n</head>\n<body>\n";
@@ -67,7 +68,8 @@ std::string contentsHtml(const Page& page) {
             escapeHtml(page.input.building.rooms[r].name) + "</a></li>\n";
   }
   html +=
-      "<li><a href=\"#assumptions\">Assumptions</a></li>\n<li><a href=\"#accuracy\">Accuracy</a></li>\n"
+      "<li><a href=\"#model\">3D</a></li>\n<li><a href=\"#assumptions\">Assumptions</a></li>\n<li><a "
+      "href=\"#accuracy\">Accuracy</a></li>\n"
       "<li><a href=\"#materials\">Materials</a></li>\n<li><a href=\"#again\">Reproduce</a></li>\n";
   return html + "</ul></nav>\n";
 }
@@ -95,9 +97,62 @@ std::string viewFigure(const PageView& view) {
          escapeHtml(view.fileStem) + ".exr</code>.</figcaption></figure>\n";
 }
 
-std::string viewsHtml(const std::vector<PageView>& views) {
-  if (views.empty()) return {};
-  std::string html = "<div class=\"views\">\n" + viewFigure(views.front());
+/// Whether EN 17037's least level is met, or nothing where it cannot be asked.
+std::string verdict(const Page& page, std::size_t g) {
+  const auto en = en17037Of(page.input.solution.grids.at(g), page.input.study);
+  if (!en) return {};
+  const char* best = nullptr;
+  for (const En17037::Level& level : en->levels) {
+    if (level.met) best = level.name;
+  }
+  return best == nullptr ? "<span class=\"no\">not met</span>"
+                         : "<span class=\"yes\">met, " + std::string(best) + "</span>";
+}
+
+std::string errorText(const GridMetrics& m) {
+  return "± " + fixedNumber(m.p95ErrorEstimate_pct, 1);
+}
+
+/// What a reader wants to know first, beside the first view.
+std::string summaryTable(const Page& page) {
+  constexpr std::size_t mostRows = 8;
+  const ReportInput& input = page.input;
+  const bool withFactor = hasDaylightFactor(input.study.sky);
+  const std::size_t grids = input.building.grids.size();
+  if (grids == 0) return {};
+  bool anyVerdict = false;
+  for (std::size_t g = 0; g < grids; ++g) anyVerdict = anyVerdict || !verdict(page, g).empty();
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t g = 0; g < std::min(grids, mostRows); ++g) {
+    const SensorGrid& grid = input.building.grids[g];
+    const GridMetrics m = metricsOf(input.solution.grids.at(g), input.study.sky);
+    rows.push_back({escapeHtml(roomName(input.building, grid.room)), illuminanceText(m.illuminance_lx.mean)});
+    if (withFactor) rows.back().push_back(factorText(m.daylightFactor_pct->median));
+    rows.back().push_back(errorText(m));
+    if (anyVerdict) rows.back().push_back(verdict(page, g));
+  }
+  std::vector<Column> columns = {{"Room", "", false}, {"Mean", "lx"}};
+  if (withFactor) columns.push_back({"Median DF", "%"});
+  columns.push_back({"Error", "%"});
+  if (anyVerdict) columns.push_back({"EN 17037", "", false});
+  std::string html = tableHtml("At a glance", columns, rows);
+  if (grids > mostRows) {
+    html += "<p class=\"note\"><a href=\"#overview\">All " + std::to_string(grids) + " grids</a></p>\n";
+  }
+  return html;
+}
+
+/// The first screen: a view, and beside it the figures; further views below.
+std::string firstHtml(const Page& page) {
+  const std::vector<PageView>& views = page.pictures.views;
+  const std::string summary = summaryTable(page);
+  if (views.empty()) return summary;
+  std::string html =
+      "<svg width=\"0\" height=\"0\" aria-hidden=\"true\" class=\"unseen\"><filter id=\"exposure\" "
+      "color-interpolation-filters=\"linearRGB\"><feComponentTransfer><feFuncR type=\"linear\"/><feFuncG "
+      "type=\"linear\"/><feFuncB type=\"linear\"/></feComponentTransfer></filter></svg>\n<div "
+      "class=\"views\">\n<div class=\"first\">\n" +
+      viewFigure(views.front()) + "<div class=\"glance\">\n" + summary + "</div>\n</div>\n";
   if (views.size() > 1) {
     html += "<div class=\"rest\">\n";
     for (std::size_t v = 1; v < views.size(); ++v) html += viewFigure(views[v]);
@@ -122,6 +177,8 @@ std::string overviewSection(const Page& page) {
       row.push_back(factorText(m.daylightFactor_pct->median));
       row.push_back(fixedNumber(m.shareAbove2_pct, 0));
     }
+    row.push_back(errorText(m));
+    if (withFactor) row.push_back(verdict(page, g));
     rows.push_back(row);
   }
   if (rows.size() < 2) return {};  // one grid's figures follow at once
@@ -130,6 +187,8 @@ std::string overviewSection(const Page& page) {
   if (withFactor) {
     columns.insert(columns.end(), {{"Mean DF", "%"}, {"Median DF", "%"}, {"Area with DF ≥ 2 %", "%"}});
   }
+  columns.push_back({"Error", "%"});
+  if (withFactor) columns.push_back({"EN 17037", "", false});
   return sectionOpening("overview", "Overview") + tableHtml("Rooms and their grids", columns, rows) +
          "</section>\n";
 }
@@ -171,7 +230,7 @@ std::string norm(const Page& page, std::size_t g) {
   for (const En17037::Level& level : en->levels) {
     rows.push_back({level.name, factorText(level.target_pct), fixedNumber(level.shareTarget_pct, 0),
                     factorText(level.minimum_pct), fixedNumber(level.shareMinimum_pct, 0),
-                    level.met ? "<span class=\"yes\">met</span>" : "not met"});
+                    level.met ? "<span class=\"yes\">met</span>" : "<span class=\"no\">not met</span>"});
   }
   return tableHtml("EN 17037, daylight factor method, for " +
                        fixedNumber(page.input.study.site.externalDiffuse_lx, 0) +
@@ -188,7 +247,7 @@ std::string norm(const Page& page, std::size_t g) {
 std::string gridHtml(const Page& page, std::size_t g) {
   const GridMetrics m = metricsOf(page.input.solution.grids.at(g), page.input.study.sky);
   return "<h3>" + escapeHtml(page.input.building.grids[g].name) + "</h3>\n" + gridFigures(m) +
-         planFigure(page, g) + norm(page, g);
+         planFigure(page, g) + sectionChart(page.input, g, page.scale) + norm(page, g);
 }
 
 /// The surfaces of a room, the largest first.
@@ -203,33 +262,28 @@ std::string surfaceTable(const Page& page, std::int32_t room) {
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return solution.surfaces[a].area_m2 > solution.surfaces[b].area_m2;
   });
-  const std::size_t left = order.size() - std::min(order.size(), mostSurfaceRows);
-  order.resize(order.size() - left);
+  std::vector<std::string> ids;
   std::vector<std::vector<std::string>> rows;
   for (const std::size_t i : order) {
     const SurfaceValue& v = solution.surfaces[i];
     const Material& material = model.materials.at(model.surfaces[v.surface].material);
+    ids.push_back("surface-" + std::to_string(i));
     rows.push_back({escapeHtml(page.surfaceNames[i]),
                     swatchHtml(material.reflectance) + escapeHtml(material.name), fixedNumber(v.area_m2, 1),
                     fixedNumber(luminousY(material.reflectance), 2), illuminanceText(v.illuminanceMean_lx),
                     illuminanceText(v.illuminanceMin_lx), illuminanceText(v.illuminanceMax_lx),
                     roundedNumber(luminousY(v.exitanceMean_lm_m2) / std::numbers::pi)});
   }
-  std::string html = tableHtml("Surfaces",
-                               {{"Surface", "", false},
-                                {"Material", "", false},
-                                {"Area", "m²"},
-                                {"Reflectance", ""},
-                                {"Mean", "lx"},
-                                {"Minimum", "lx"},
-                                {"Maximum", "lx"},
-                                {"Luminance", "cd/m²"}},
-                               rows);
-  if (left > 0) {
-    html += "<p class=\"note\">" + std::to_string(left) +
-            " smaller surfaces are in <code>surfaces.csv</code>.</p>\n";
-  }
-  return html;
+  return tableHtml("Surfaces",
+                   {{"Surface", "", false},
+                    {"Material", "", false},
+                    {"Area", "m²"},
+                    {"Reflectance", ""},
+                    {"Mean", "lx"},
+                    {"Minimum", "lx"},
+                    {"Maximum", "lx"},
+                    {"Luminance", "cd/m²"}},
+                   rows, ids, mostSurfaceRows);
 }
 
 std::string roomSections(const Page& page) {
@@ -335,10 +389,11 @@ std::string againSection(const Page& page) {
 
 std::string pageHtml(const ReportInput& input, const PagePictures& pictures) {
   const Page page{input, pictures, planScale(input.solution), surfaceRowNames(input)};
-  return headHtml(escapeHtml(modelName(input.study))) + headerHtml(page) + "<main>\n" +
-         viewsHtml(pictures.views) + overviewSection(page) + roomSections(page) + assumptionsSection(page) +
-         accuracySection(page.input) + materialsSection(page) + againSection(page) +
-         "</main>\n<footer>Clerestory " + escapeHtml(input.run.version) + "</footer>\n</body>\n</html>\n";
+  return headHtml(input, escapeHtml(modelName(input.study))) + headerHtml(page) + "<main>\n" +
+         firstHtml(page) + overviewSection(page) + roomSections(page) +
+         viewerSection(page.input, page.scale) + assumptionsSection(page) + accuracySection(page.input) +
+         materialsSection(page) + againSection(page) + "</main>\n<footer>Clerestory " +
+         escapeHtml(input.run.version) + "</footer>\n" + scriptsHtml(input) + "</body>\n</html>\n";
 }
 
 }  // namespace clerestory

@@ -8,17 +8,21 @@
 namespace clerestory {
 
 std::string tableHtml(const std::string& caption, const std::vector<Column>& columns,
-                      const std::vector<std::vector<std::string>>& rows) {
+                      const std::vector<std::vector<std::string>>& rows, const std::vector<std::string>& ids,
+                      std::size_t mostRows) {
   std::string html = "<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"" + caption +
                      "\"><table>\n<caption>" + caption + "</caption>\n<thead><tr>";
   for (const Column& column : columns) {
-    html += std::string("<th scope=\"col\"") + (column.isNumber ? " class=\"n\">" : ">") + column.title;
+    html += "<th scope=\"col\" data-name=\"" + column.title + "\" data-unit=\"" + column.unit + '"' +
+            (column.isNumber ? " class=\"n\">" : ">") + column.title;
     if (!column.unit.empty()) html += " <span class=\"u\">" + column.unit + "</span>";
     html += "</th>";
   }
   html += "</tr></thead>\n<tbody>\n";
-  for (const std::vector<std::string>& row : rows) {
-    html += "<tr>";
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const std::vector<std::string>& row = rows[r];
+    html += std::string("<tr") + (r >= mostRows ? " class=\"more\"" : "");
+    html += ids.empty() ? ">" : " id=\"" + ids.at(r) + "\">";
     for (std::size_t c = 0; c < row.size(); ++c) {
       const std::string style = columns.at(c).isNumber ? " class=\"n\"" : "";
       html += c == 0 ? "<th scope=\"row\"" + style + ">" + row[c] + "</th>"

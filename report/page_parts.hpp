@@ -10,6 +10,8 @@
 
 #include <report/report.hpp>
 
+#include "plan.hpp"
+
 namespace clerestory {
 
 /// A table's column; numbers stand to the right.
@@ -19,9 +21,11 @@ struct Column {
   bool isNumber = true;
 };
 
-/// A table with a caption, a header row, and a row header in each first cell.
+/// A table with a caption, a header row, and a row header in each first cell. `ids` (#rows, or none) are the
+/// rows' ids; a long table shows `mostRows` of its rows until the reader asks for all.
 std::string tableHtml(const std::string& caption, const std::vector<Column>& columns,
-                      const std::vector<std::vector<std::string>>& rows);
+                      const std::vector<std::vector<std::string>>& rows,
+                      const std::vector<std::string>& ids = {}, std::size_t mostRows = 1'000'000);
 
 /// One figure with its label, for a list of figures.
 std::string figureHtml(const std::string& label, const std::string& value, const std::string& unit);
@@ -36,5 +40,17 @@ std::string domainName(const Building& building, std::int32_t domain);
 
 /// The section on accuracy: error estimates, convergence, energy balance.
 std::string accuracySection(const ReportInput& input);
+
+/// Whether the page carries the 3D viewer: the program was built with it and the solution is not too large.
+bool hasViewer(const ReportInput& input);
+
+/// The part of the content security policy that lets the page's own scripts run, and no others.
+std::string scriptPolicy(const ReportInput& input);
+
+/// The page's scripts, to stand at its end.
+std::string scriptsHtml(const ReportInput& input);
+
+/// The section with the building in 3D, or with the reason why there is none.
+std::string viewerSection(const ReportInput& input, const PlanScale& scale);
 
 }  // namespace clerestory

@@ -6,17 +6,20 @@ namespace clerestory {
 
 inline constexpr const char* pageStyle = R"css(
 :root{color-scheme:light dark;--paper:#fdfcfa;--ink:#1d1c1a;--soft:#68645e;--line:#e3dfd7;--tint:#f4f1eb;--accent:#9a5b13;
---wall:#8b867d;--floor:#eeebe4;--glass:#3f93c4}
-@media (prefers-color-scheme:dark){:root{--paper:#161514;--ink:#ebe8e2;--soft:#a19c93;--line:#34312d;--tint:#201e1c;
---accent:#e0a458;--wall:#77726a;--floor:#2a2825;--glass:#6fb9e3}}
+--wall:#8b867d;--floor:#eeebe4;--glass:#3f93c4;--yes:#1f6b3a;--no:#a3261b}
+@media (prefers-color-scheme:dark){:root:not([data-theme=light]){--paper:#161514;--ink:#ebe8e2;--soft:#a19c93;--line:#34312d;--tint:#201e1c;
+--accent:#e0a458;--wall:#77726a;--floor:#2a2825;--glass:#6fb9e3;--yes:#7ccf98;--no:#ff9d8f}}
+:root[data-theme=light]{color-scheme:light}
+:root[data-theme=dark]{color-scheme:dark;--paper:#161514;--ink:#ebe8e2;--soft:#a19c93;--line:#34312d;--tint:#201e1c;
+--accent:#e0a458;--wall:#77726a;--floor:#2a2825;--glass:#6fb9e3;--yes:#7ccf98;--no:#ff9d8f}
 *{box-sizing:border-box}
 html{-webkit-text-size-adjust:100%}
 body{margin:0;background:var(--paper);color:var(--ink);font:400 16px/1.55 system-ui,-apple-system,"Segoe UI",Roboto,
 "Helvetica Neue","Noto Sans","Liberation Sans",Arial,sans-serif;font-variant-numeric:tabular-nums lining-nums}
-main,header,footer{max-width:1000px;margin:0 auto;padding:0 32px}
-header{padding-top:72px}
+main,header,footer{max-width:1180px;margin:0 auto;padding:0 32px}
+header{padding-top:44px}
 h1,h2,h3{font-weight:600;line-height:1.2;letter-spacing:-.012em;overflow-wrap:anywhere}
-h1{font-size:2.6rem;font-weight:300;margin:.2em 0 .35em;letter-spacing:-.022em}
+h1{font-size:2.4rem;font-weight:300;margin:.15em 0 .25em;letter-spacing:-.022em}
 h2{font-size:1.55rem;font-weight:400;margin:0 0 1.1rem}
 h3{font-size:1.02rem;margin:2.4rem 0 .7rem}
 p{max-width:44em;margin:.7em 0}
@@ -31,8 +34,11 @@ nav ul{list-style:none;display:flex;flex-wrap:wrap;gap:6px 22px;margin:0;padding
 figure{margin:30px 0}
 figure img{display:block;width:100%;height:auto;background:var(--tint)}
 figcaption{margin-top:10px;max-width:52em}
-.views figure:first-child{margin-top:44px}
-.views .rest{display:grid;grid-template-columns:repeat(auto-fit,minmax(300px,1fr));gap:24px}
+.first{display:grid;grid-template-columns:minmax(0,1.75fr) minmax(0,1fr);gap:40px;align-items:start;margin-top:10px}
+.first figure,.glance .table{margin:0}
+.views{margin-top:26px}
+.views .rest{margin-top:30px}
+.views .rest{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(420px,100%),1fr));gap:24px}
 .views .rest figure{margin:0}
 dl.figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(190px,1fr));gap:26px 28px;margin:26px 0 34px}
 dl.figures dt{font-size:.84rem;color:var(--soft);line-height:1.35}
@@ -73,24 +79,73 @@ svg .on-dark{fill:#fff}
 .chart .gridline{stroke:var(--line)}
 .chart .line{fill:none;stroke:var(--accent);stroke-width:1.6}
 .chart circle{fill:var(--accent)}
+.chart .band{fill:var(--accent);fill-opacity:.14}
 ul.list{list-style:none;margin:14px 0;padding:0;max-width:52em}
 ul.list li{padding:9px 0;border-bottom:1px solid var(--line)}
 code,pre{font:.9em/1.5 ui-monospace,"SF Mono",Menlo,Consolas,"Liberation Mono",monospace}
 pre{background:var(--tint);padding:16px 20px;overflow-x:auto}
 .hash{overflow-wrap:anywhere}
-.yes{font-weight:600}
+.yes,.no{font-weight:600;white-space:nowrap}
+.yes{color:var(--yes)}
+.no{color:var(--no)}
 footer{padding-top:8px;padding-bottom:72px;color:var(--soft);font-size:.88rem}
+[hidden]{display:none!important}
+.unseen{position:absolute}
+button,select,input{font:inherit;color:inherit}
+button:not(.sort),select{background:var(--tint);border:1px solid var(--line);border-radius:4px;padding:4px 10px}
+button:not(.sort):hover,select:hover{border-color:var(--soft)}
+:focus-visible{outline:2px solid var(--accent);outline-offset:2px}
+input[type=range],input[type=checkbox]{accent-color:var(--accent);vertical-align:middle}
+button.theme{float:right;font-size:.85rem}
+button.sort{background:none;border:0;padding:0;text-align:inherit;cursor:pointer;font-size:inherit;line-height:inherit}
+button.sort:hover{color:var(--ink)}
+th[aria-sort] .sort{color:var(--ink);font-weight:600}
+th[aria-sort=ascending] .sort::after{content:" \2191"}
+th[aria-sort=descending] .sort::after{content:" \2193"}
+.filter{display:block;margin:30px 0 -18px;font-size:.88rem;color:var(--soft)}
+.filter input{background:var(--tint);border:1px solid var(--line);border-radius:4px;padding:4px 8px;margin:0 8px;width:16em;
+max-width:60vw}
+.fold{margin-top:-14px;font-size:.88rem}
+table.folded:not(.filtered) tr.more{display:none}
+tr.chosen th,tr.chosen td,tr:target th,tr:target td{background:var(--tint)}
+.readout{min-height:1.6em;font-size:.95rem;margin:.4em 0 0}
+.switches{display:flex;gap:22px;font-size:.88rem;margin-bottom:8px}
+svg .off{display:none}
+.plan .sensors rect.chosen{stroke:var(--ink);stroke-width:2}
+.plan .isolux path{fill:none;stroke:#fff;stroke-width:1.3;pointer-events:none}
+.plan .isolux path.under{stroke:#1d1c1a;stroke-width:2.6;stroke-opacity:.55}
+.exposure{display:block;font-size:.88rem}
+.glance table{font-size:.86rem}
+.glance tbody td:not(.n),.glance tbody th:not(.n){min-width:0}
+.glance .n{padding-left:8px}
+.glance .n+td:not(.n),.glance .n+th:not(.n){padding-left:12px;padding-right:0}
+.exposed img{filter:url(#exposure)}
+.controls{display:flex;flex-wrap:wrap;gap:10px 20px;align-items:center;font-size:.88rem;margin-bottom:12px}
+.controls output{display:inline-block;min-width:4.2em}
+.stage{height:min(64vh,600px);min-height:300px;background:var(--tint)}
+.stage canvas{display:block;width:100%;height:100%;touch-action:none}
+.legend3d{margin:14px 0;max-width:420px;font-size:.82rem;color:var(--soft)}
+.legend3d .bar{height:10px}
+.legend3d .ticks{position:relative;height:1.6em}
+.legend3d .ticks span{position:absolute;transform:translateX(-50%)}
+.picked{margin-top:12px;min-height:4.6em;font-size:.92rem}
+.picked dl{display:flex;flex-wrap:wrap;gap:6px 26px;margin:0 0 6px}
+.picked dt{font-size:.8rem;color:var(--soft)}
+.picked dd{margin:0}
+@media (max-width:900px){.first{grid-template-columns:minmax(0,1fr);gap:20px}}
 @media (max-width:640px){main,header,footer{padding-left:20px;padding-right:20px}header{padding-top:40px}
 h1{font-size:2rem}section{margin:56px 0}}
-@page{size:A4;margin:17mm 16mm 18mm}
-@media print{:root{color-scheme:light;--paper:#fff;--ink:#000;--soft:#55524d;--line:#d5d1ca;--tint:#f5f3ef;--accent:#8a4f0c;
---wall:#8b867d;--floor:#eeebe4;--glass:#3f93c4}
+@page{margin:17mm 16mm 18mm}
+@media print{:root:root:root{color-scheme:light;--paper:#fff;--ink:#000;--soft:#55524d;--line:#d5d1ca;--tint:#f5f3ef;--accent:#8a4f0c;
+--wall:#8b867d;--floor:#eeebe4;--glass:#3f93c4;--yes:#1f6b3a;--no:#a3261b}
 *{-webkit-print-color-adjust:exact;print-color-adjust:exact}
 body{font-size:10pt}main,header,footer{max-width:none;padding:0}header{padding-top:0}nav{display:none}
 section{margin:12mm 0 0;padding-top:6mm}
 .room,.break{break-before:page;margin-top:0;padding-top:0;border-top:0}
 h2,h3,caption{break-after:avoid}figure,dl.figures,tr,li,pre{break-inside:avoid}
-thead{display:table-header-group}.table{overflow:visible;margin:7mm 0}
+thead{display:table-header-group;break-inside:avoid}th,td{overflow-wrap:break-word!important}tr.chosen th,tr.chosen td{background:none}.plan .sensors rect.chosen{stroke:none}.table{overflow:visible;margin:7mm 0}
+.filter,.fold,.switches,.readout,.exposure,.theme,.screen{display:none!important}
+.first{grid-template-columns:1fr;gap:5mm}.first img{max-height:95mm;width:auto;max-width:100%}tr.more{display:none}th[aria-sort] .sort::after{content:""}
 table{font-size:8.6pt}dl.figures{grid-template-columns:repeat(4,1fr);gap:5mm 6mm}dl.figures dd{font-size:15pt}
 svg.plan{max-height:112mm}a{text-decoration:none}}
 )css";

@@ -36,6 +36,31 @@ struct Plan {
 };
 Plan planOf(const Building& building, const SensorGrid& grid);
 
+/// Sensors by column (to the right) and row (upwards) of their square lattice.
+struct SensorLattice {
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  std::size_t columns = 0, rows = 0;
+  std::vector<std::size_t> sensors;  ///< #columns × rows, none where there is no sensor
+
+  [[nodiscard]] std::size_t at(std::size_t column, std::size_t row) const {
+    return sensors[row * columns + column];
+  }
+};
+/// Empty where the sensors lie on no lattice of `cell_m`, as those of a points file may.
+SensorLattice latticeOf(const SensorGrid& grid, double cell_m);
+
+/// A piece of a line of equal illuminance in plan.
+struct IsoluxSegment {
+  glm::dvec2 from_m, to_m;
+};
+/// Marching squares between the sensors of a lattice, bilinear in the logarithm of lux.
+std::vector<IsoluxSegment> isoluxLine(const SensorGrid& grid, const SensorLattice& lattice,
+                                      const GridValues& values, double level_lx);
+
+/// A chart of illuminance along the line through the grid on which it varies most: with daylight from one
+/// side, into the depth of the room. Empty where the sensors lie on no lattice.
+std::string sectionChart(const ReportInput& input, std::size_t grid, const PlanScale& scale);
+
 /// The numbers that stand on a plan: few enough to be read.
 std::vector<std::size_t> labelledSensors(const SensorGrid& grid, const Plan& plan, double pixelsPerMetre);
 

@@ -39,6 +39,11 @@ std::string attribute(const char* name, double value) {
   return std::string(" ") + name + "=\"" + shortNumber(value) + '"';
 }
 
+/// 0.05, 0.5, 20 or 10 000: no more decimals than the number has.
+std::string tickText(double value) {
+  return value >= 10.0 ? fixedNumber(value, 0) : roundedNumber(value, 1);
+}
+
 std::string textAt(double x, double y, const char* style, const std::string& text) {
   return "<text" + attribute("x", x) + attribute("y", y) + " class=\"" + style + "\">" + text + "</text>\n";
 }
@@ -77,6 +82,23 @@ std::string sensorTitle(const ReportInput& input, const glm::dvec3& point, const
          fixedNumber(point.y, 2) + ", z " + fixedNumber(point.z, 2) + " m";
 }
 
+/// Lines of equal illuminance at the legend's numbers, light on dark so that they show on every colour.
+std::string isoluxSvg(const SensorGrid& grid, const GridValues& values, const Sheet& sheet,
+                      const PlanScale& scale) {
+  const SensorLattice lattice = latticeOf(grid, sheet.plan.cell_m);
+  std::string svg;
+  for (const double level_lx : scale.ticks_lx) {
+    std::string path;
+    for (const IsoluxSegment& segment : isoluxLine(grid, lattice, values, level_lx)) {
+      path += pathOf(sheet, {segment.from_m, segment.to_m}, false);
+    }
+    if (path.empty()) continue;
+    svg += "<path class=\"under\" d=\"" + path + "\"/><path d=\"" + path + "\"><title>" + tickText(level_lx) +
+           " lx</title></path>\n";
+  }
+  return svg.empty() ? svg : "<g class=\"isolux\">\n" + svg + "</g>\n";
+}
+
 std::string sensorsSvg(const ReportInput& input, std::size_t g, const Sheet& sheet, const PlanScale& scale) {
   const SensorGrid& grid = input.building.grids[g];
   const std::vector<SensorValue>& values = input.solution.grids.at(g).sensors;
@@ -90,18 +112,13 @@ std::string sensorsSvg(const ReportInput& input, std::size_t g, const Sheet& she
            hexColour(falseColour(scale.fraction(values.at(s).illuminance_lx))) + "\"><title>" +
            sensorTitle(input, point, values[s]) + "</title></rect>\n";
   }
-  svg += "</g>\n<g class=\"values\">\n";
+  svg += "</g>\n" + isoluxSvg(grid, input.solution.grids.at(g), sheet, scale) + "<g class=\"values\">\n";
   for (const std::size_t s : labelledSensors(grid, sheet.plan, sheet.scale)) {
     const double lx = values[s].illuminance_lx;
     svg += textAt(sheet.x(grid.points[s].x), sheet.y(grid.points[s].y) + 3.5,
                   scale.fraction(lx) > 0.5 ? "on-light" : "on-dark", illuminanceText(lx));
   }
   return svg + "</g>\n";
-}
-
-/// 0.05, 0.5, 20 or 10 000: no more decimals than the number has.
-std::string tickText(double value) {
-  return value >= 10.0 ? fixedNumber(value, 0) : roundedNumber(value, 1);
 }
 
 /// The scale of colours with its numbers in lux, and in daylight factors where these are in proportion.

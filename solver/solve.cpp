@@ -107,7 +107,7 @@ Solution solveColumns(const World& world, const Study& study, const SolveOptions
     report(options, "sensors", static_cast<double>(i) / static_cast<double>(grids.size()));
     solution.grids.push_back(senseGrid(light, grids[i], tuning.sensors, tuning.solverError));
   }
-  solution.surfaces = measureSurfaces(light, tuning.solverError);
+  solution.surfaces = measureSurfaces(light, tuning.solverError, solution.mesh);
   solution.rooms = measureRooms(world, study);
   if (options.pictures) {
     for (std::size_t i = 0; i < study.views.size(); ++i) {

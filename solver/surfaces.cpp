@@ -16,13 +16,41 @@ std::int32_t roomOfDomain(const Building& building, std::int32_t domain) {
   return -1;
 }
 
+/// Adds a leaf to the mesh, with the light of its plane at each corner.
+template <int K>
+void drawElement(const ColumnLayout& layout, const Radiosity<K>& radiosity, NodeIndex leaf,
+                 ElementMesh& mesh) {
+  const Hierarchy& tree = radiosity.tree;
+  const std::span<const glm::vec3> polygon = tree.polygon(leaf);
+  const std::uint32_t side = tree.treeSide[leaf];
+  glm::vec3 turn(0.0F);
+  for (std::size_t i = 2; i < polygon.size(); ++i) {
+    turn += glm::cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
+  }
+  const Columns<K> sunlight_lx = radiosity.sunlightOf(layout, leaf);
+  const bool turned = glm::dot(turn, tree.normal(leaf)) < 0.0F;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::vec3& corner = polygon[turned ? polygon.size() - 1 - i : i];
+    const Columns<K> irradiance_lx = radiosity.irradianceAt(leaf, corner) + sunlight_lx;
+    mesh.corners_m.push_back(corner);
+    mesh.illuminance_lx.push_back(static_cast<float>(luminanceOf(layout.totalColour(irradiance_lx))));
+    mesh.exitance_lm_m2.emplace_back(
+        layout.totalColour(radiosity.reflectance[side] * irradiance_lx + radiosity.exitance_lm_m2[side]));
+  }
+  mesh.firstCorner.push_back(static_cast<std::uint32_t>(mesh.corners_m.size()));
+}
+
 }  // namespace
 
 template <int K>
-std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double solverError) {
+std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double solverError,
+                                          ElementMesh& mesh) {
   const World& world = light.world();
   const Building& building = world.building;
   std::map<std::pair<std::int32_t, std::uint32_t>, SurfaceValue> rows;
+  std::vector<const SurfaceValue*> rowOfElement;
+  mesh = {};
+  mesh.origin_m = world.rays.origin();
   for (std::int32_t domain = 0; domain < static_cast<std::int32_t>(building.domains.size()); ++domain) {
     const Radiosity<K>* radiosity = light.of(domain);
     if (radiosity == nullptr) continue;
@@ -52,20 +80,25 @@ std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double so
       row.exitanceMean_lm_m2 +=
           area_m2 * world.layout.totalColour(radiosity->reflectance[tree.treeSide[node]] * irradiance_lx +
                                              radiosity->exitance_lm_m2[tree.treeSide[node]]);
+      rowOfElement.push_back(&row);
+      drawElement(world.layout, *radiosity, node, mesh);
     }
   }
   std::vector<SurfaceValue> result;
+  std::map<const SurfaceValue*, std::uint32_t> place;
   for (auto& [key, row] : rows) {
+    place[&row] = static_cast<std::uint32_t>(result.size());
     row.illuminanceMean_lx /= row.area_m2;
     row.exitanceMean_lm_m2 /= row.area_m2;
     row.error_lx = solverError * row.illuminanceMean_lx;
     result.push_back(row);
   }
+  for (const SurfaceValue* row : rowOfElement) mesh.surfaceRow.push_back(place[row]);
   return result;
 }
 
 #define CLERESTORY_INSTANTIATE(K) \
-  template std::vector<SurfaceValue> measureSurfaces<K>(const SolvedLight<K>&, double);
+  template std::vector<SurfaceValue> measureSurfaces<K>(const SolvedLight<K>&, double, ElementMesh&);
 CLERESTORY_STUDY_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Means over surfaces, from the elements of a solved domain.
+// Means over surfaces, and the elements to draw, from solved domains.
 #pragma once
 
 #include <solver/solution.hpp>
@@ -9,8 +9,9 @@
 namespace clerestory {
 
 /// One row for each surface and room of all solved domains, in the order of rooms (outside last) and
-/// surfaces. solverError: relative error of an element's illuminance, for error_lx.
+/// surfaces; `mesh` becomes the elements that the rows are made of. solverError: relative error of an
+/// element's illuminance, for error_lx.
 template <int K>
-std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double solverError);
+std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double solverError, ElementMesh& mesh);
 
 }  // namespace clerestory

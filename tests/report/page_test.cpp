@@ -33,6 +33,25 @@ std::string withoutPictures(std::string html) {
   return html;
 }
 
+/// The page with nothing in its own script elements but their tags.
+std::string withoutScripts(std::string html) {
+  for (std::size_t at = html.find("<script"); at != std::string::npos; at = html.find("<script", at + 1)) {
+    const std::size_t start = html.find('>', at) + 1;
+    html.erase(start, html.find("</script>", start) - start);
+  }
+  return html;
+}
+
+/// The scripts that run, in the page's order: elements without a type.
+std::vector<std::string> scriptsOf(const std::string& html) {
+  std::vector<std::string> scripts;
+  const std::string start = "<script>";
+  for (std::size_t at = html.find(start); at != std::string::npos; at = html.find(start, at + 1)) {
+    scripts.push_back(html.substr(at + start.size(), html.find("</script>", at) - at - start.size()));
+  }
+  return scripts;
+}
+
 TEST(Page, EscapesEveryNameFromTheModel) {
   const std::string attack = "\"'><script>alert(1)</script>&";
   fake::Case made = fake::office();
@@ -42,23 +61,39 @@ TEST(Page, EscapesEveryNameFromTheModel) {
   for (Material& material : made.building.model.materials) material.name = attack;
   for (Surface& surface : made.building.model.surfaces) surface.name = attack;
   made.diagnoses.push_back({attack, attack, attack, 1});
-  const std::string html = page(made);
-  EXPECT_EQ(html.find("<script"), std::string::npos);
+  const std::string whole = page(made);
+  EXPECT_EQ(scriptsOf(whole), scriptsOf(page(fake::office())));
+  const std::string html = withoutScripts(whole);
+  EXPECT_EQ(countOf(html, "<script"), countOf(whole, "</script>"));
   EXPECT_EQ(html.find("alert(1)</"), std::string::npos);
   EXPECT_GT(countOf(html, "&lt;script&gt;alert(1)&lt;/script&gt;&amp;"), 10u);
 }
 
 TEST(Page, NeedsNothingFromOutside) {
-  const std::string html = withoutPictures(page(fake::office()));
+  const std::string html = withoutScripts(withoutPictures(page(fake::office())));
   std::string lower = html;
   std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
   // The policy's own http-equiv is the only place where these letters may stand.
   EXPECT_EQ(countOf(lower, "http"), countOf(lower, "http-equiv"));
-  for (const char* part : {"<script", "<link", "@import", "url(//", "src=\"//", "<iframe", "onload="}) {
+  for (const char* part : {"<script src", "<link", "@import", "url(//", "src=\"//", "<iframe", "onload="}) {
     EXPECT_EQ(lower.find(part), std::string::npos) << part;
   }
-  EXPECT_NE(html.find("content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\""),
-            std::string::npos);
+  EXPECT_NE(
+      html.find("content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; "
+                "form-action 'none'; script-src 'sha256-"),
+      std::string::npos);
+}
+
+TEST(Page, RunsItsOwnScriptsAndNoOthers) {
+  const std::string html = page(fake::office());
+  const std::vector<std::string> scripts = scriptsOf(html);
+  ASSERT_GE(scripts.size(), 1u);
+  EXPECT_LE(scripts.size(), 2u);
+  const std::size_t policy = html.find("script-src ");
+  const std::string allowed = html.substr(policy, html.find('"', policy) - policy);
+  EXPECT_EQ(countOf(allowed, "'sha256-"), scripts.size());
+  EXPECT_EQ(allowed.find("unsafe"), std::string::npos);
+  for (const std::string& script : scripts) EXPECT_EQ(script.find("<!--"), std::string::npos);
 }
 
 TEST(Page, ShowsEverySensorRoomAndView) {
@@ -75,7 +110,7 @@ TEST(Page, ShowsEverySensorRoomAndView) {
 }
 
 TEST(Page, ClosesWhatItOpens) {
-  const std::string html = page(fake::office());
+  const std::string html = withoutScripts(page(fake::office()));
   for (const char* tag :
        {"table", "section", "figure", "svg", "g", "dl", "ul", "div", "p", "title", "main"}) {
     const std::string name = tag;

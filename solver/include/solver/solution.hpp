@@ -66,10 +66,24 @@ struct LuminanceImage {
   std::vector<glm::vec3> pixels_cd_m2;  ///< rows from the top, linear Rec.709
 };
 
+/// The leaves of all solved domains as they are drawn: convex planar polygons, counterclockwise seen from the
+/// air that lights them, with the light at each corner.
+struct ElementMesh {
+  glm::dvec3 origin_m{0.0};                      ///< corners are relative to it, world axes
+  std::vector<std::uint32_t> firstCorner = {0};  ///< #elements + 1, into the arrays below
+  std::vector<std::uint32_t> surfaceRow;         ///< #elements, index into Solution::surfaces
+  std::vector<glm::vec3> corners_m;              ///< #corners
+  std::vector<float> illuminance_lx;             ///< #corners
+  std::vector<glm::vec3> exitance_lm_m2;         ///< #corners, linear Rec.709, own emission included
+
+  [[nodiscard]] std::size_t size() const { return surfaceRow.size(); }
+};
+
 struct Solution {
   std::vector<GridValues> grids;  ///< in the order of Building::grids
   std::vector<SurfaceValue> surfaces;
   std::vector<RoomValue> rooms;  ///< in the order of Building::rooms
+  ElementMesh mesh;
   std::vector<IterationStatistics> iterations;
   std::vector<EnergyBalance> balances;
   std::vector<LuminanceImage> views;  ///< in the order of Study::views; empty without pictures
