@@ -5,6 +5,7 @@
 
 #include "cut.hpp"
 #include "domains.hpp"
+#include "luminaires.hpp"
 #include "rooms.hpp"
 
 namespace clerestory {
@@ -16,9 +17,11 @@ Building makeBuilding(CleanModel model, const Study& study) {
     throw InputError("the model has no surface left to light: it holds no polygon, or only degenerate ones");
   }
   cutAtPanes(building.model.pieces, building.model.materials);
+  placeLuminaires(building, study);
   findDomains(building);
   const RayScene rays(building.model, building.innerGlass);
   findRooms(building, rays);
+  checkLuminaires(building);
   layGrids(building, study, rays);
   return building;
 }

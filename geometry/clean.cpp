@@ -173,6 +173,7 @@ CleanModel cleanScene(const Scene& scene) {
   const NameRanks ranks = rankNames(scene);
   CleanModel model;
   model.materials = scene.materials;
+  model.luminaires = luminairesOf(scene.lights);
 
   Soup soup = weld(collectFaces(scene, tolerances, model), tolerances, model.counts);
   dropDegenerateFaces(soup, tolerances, model.counts, model.diagnoses);

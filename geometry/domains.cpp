@@ -15,6 +15,7 @@
 #include <geometry/sampling.hpp>
 
 #include "cut.hpp"
+#include "luminaires.hpp"
 
 namespace clerestory {
 namespace {
@@ -522,6 +523,11 @@ void findDomains(Building& building) {
     const bool brings = isGlass(model, side / 2) || isEmitter(model, side / 2);
     if (brings && air[side] != nowhere) lit[air[side]] = true;
   }
+  const RayScene& rays = cut ? *cut : whole;
+  for (const Luminaire& luminaire : building.luminaires) {
+    const auto seen = sideSeenBy(luminaire, rays, [&](std::uint32_t side) { return air[side] != nowhere; });
+    if (seen && *seen) lit[air[seen->side()]] = true;
+  }
   forEachIndex(air.size(), 64, [&](std::size_t side) {
     air[side] = survey->closerAirOf(static_cast<std::uint32_t>(side), air[side], lit);
   });
@@ -554,6 +560,17 @@ void findDomains(Building& building) {
     building.portals.push_back(
         {piece, frontIsInside, frontIsInside ? front : back, frontIsInside ? back : front});
     building.domains[static_cast<std::size_t>(building.portals.back().inside)].lit = true;
+  }
+
+  const auto isAir = [&](std::uint32_t side) { return building.sideDomain[side] >= 0; };
+  const bool hasOutside = !building.domains.empty() && building.domains[0].open;
+  for (const Luminaire& luminaire : building.luminaires) {
+    const auto seen = sideSeenBy(luminaire, rays, isAir);
+    std::int32_t domain = -1;
+    if (seen && *seen) domain = building.sideDomain[seen->side()];
+    if (seen && !*seen && hasOutside) domain = 0;
+    building.luminaireDomain.push_back(domain);
+    if (domain >= 0) building.domains[static_cast<std::size_t>(domain)].lit = true;
   }
 }
 

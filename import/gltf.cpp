@@ -255,8 +255,11 @@ class GltfReader {
     } else {
       placed.outerCone_rad = std::numbers::pi / 4.0;
     }
+    if (placed.kind == PunctualLight::Kind::directional) {
+      addDiagnosis(scene_.diagnoses,
+                   {"C132", "directional lights were left out; state the sun in [sky]", node.pointer()});
+    }
     scene_.lights.push_back(std::move(placed));
-    addDiagnosis(scene_.diagnoses, {"C132", "lamps from the model were left out", node.pointer()});
   }
 
   GltfDocument document_;

@@ -63,10 +63,17 @@ Photometry pointSource(const std::string& name, std::vector<double> gamma_deg,
 
 }  // namespace
 
+glm::dvec3 IntensityDistribution::pole() const {
+  return frameOf(type).pole;
+}
+
+double IntensityDistribution::latitudeOf(const glm::dvec3& direction) const {
+  return std::asin(std::clamp(glm::dot(direction, frameOf(type).pole), -1.0, 1.0)) / kDegree;
+}
+
 double IntensityDistribution::intensity(const glm::dvec3& direction) const {
   const Frame frame = frameOf(type);
-  const double latitude = std::asin(std::clamp(glm::dot(direction, frame.pole), -1.0, 1.0)) / kDegree;
-  const Between row = placeIn(latitude_deg, latitude);
+  const Between row = placeIn(latitude_deg, latitudeOf(direction));
   if (!row.isIn) return 0.0;
   const std::size_t next = std::min(row.low + 1, latitude_deg.size() - 1);
   const auto along = [&](std::size_t column) {

@@ -10,6 +10,7 @@
 #include <import/study.hpp>
 
 #include "sensorpoints.hpp"
+#include "studyluminaires.hpp"
 #include "studytext.hpp"
 #include "textfile.hpp"
 #include "tomlsection.hpp"
@@ -145,7 +146,7 @@ void readBrightness(const TomlSection& section, SkySettings& sky) {
     return;
   }
   sky.diffuseHorizontal_lx =
-      section.number("diffuse_horizontal_lx", {0, 1e6, false}).value_or(sky.diffuseHorizontal_lx);
+      section.number("diffuse_horizontal_lx", {0, 1e6}).value_or(sky.diffuseHorizontal_lx);
   sky.directNormal_lx = section.number("direct_normal_lx", {0, 1e6}).value_or(0.0);
 }
 
@@ -364,7 +365,6 @@ Study readStudy(const std::filesystem::path& file) {
   const TomlSection root(table, "", name);
   root.allowOnly({"model", "site", "materials", "sky", "ground", "glazing", "opening", "luminaire", "grid",
                   "view", "accuracy", "report"});
-  root.refuse({"luminaire"});
   const std::filesystem::path folder = file.parent_path();
   Study study;
   readModelSection(root, folder, study);
@@ -374,6 +374,7 @@ Study readStudy(const std::filesystem::path& file) {
   readGround(root, study);
   readGlazing(root, study);
   readOpenings(root, study);
+  readLuminaires(root, folder, study);
   readGrids(root, folder, study);
   readViews(root, study);
   readAccuracy(root, study);

@@ -128,6 +128,24 @@ void writeSky(const Study& study, Writer& out) {
   out.line("frame", study.frameFactor);
 }
 
+void writeLuminaire(const LuminaireSettings& luminaire, Writer& out) {
+  out.section("[[luminaire]]");
+  out.line("name", inQuotes(luminaire.name));
+  if (luminaire.file.empty()) {
+    out.line("intensity_cd", luminaire.intensity_cd);
+    out.line("lambertian", luminaire.lambertian ? "true" : "false");
+  } else {
+    out.line("file", inQuotes(luminaire.file));
+  }
+  out.line("position", list(luminaire.position_m));
+  out.line("aim", list(luminaire.aim));
+  out.line("rotation", luminaire.rotation_deg);
+  out.line("flux_factor", luminaire.fluxFactor);
+  out.line("array", "{ count = [" + std::to_string(luminaire.count[0]) + ", " +
+                        std::to_string(luminaire.count[1]) + "], step = [" + numberText(luminaire.step_m.x) +
+                        ", " + numberText(luminaire.step_m.y) + "] }");
+}
+
 void writeGrid(const GridSettings& grid, Writer& out) {
   out.section("[[grid]]");
   out.line("name", inQuotes(grid.name));
@@ -185,6 +203,9 @@ std::string studyToml(const Study& study) {
     for (const glm::dvec3& corner : outline) corners += (corners.empty() ? "" : ", ") + list(corner);
     out.section("[[opening]]");
     out.line("polygon", "[" + corners + "]");
+  }
+  for (const LuminaireSettings& luminaire : study.luminaires) {
+    writeLuminaire(luminaire, out);
   }
   for (const GridSettings& grid : study.grids) {
     writeGrid(grid, out);

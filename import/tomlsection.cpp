@@ -161,6 +161,15 @@ std::optional<glm::dvec3> TomlSection::point(const char* key) const {
   return glm::dvec3(values[0], values[1], values[2]);
 }
 
+std::optional<glm::dvec2> TomlSection::plan(const char* key) const {
+  const toml::node* node = table_->get(key);
+  if (node == nullptr) {
+    return std::nullopt;
+  }
+  const std::vector<double> values = numbersOf(*node, key, 2, kAnyNumber);
+  return glm::dvec2(values[0], values[1]);
+}
+
 std::optional<std::array<std::int64_t, 2>> TomlSection::pair(const char* key) const {
   const toml::node* node = table_->get(key);
   if (node == nullptr) {

@@ -50,6 +50,7 @@ class TomlSection {
   [[nodiscard]] std::optional<glm::dvec3> color(const char* key, const Range& range) const;
   [[nodiscard]] std::optional<glm::dvec3> point(const char* key) const;                  ///< [x, y, z]
   [[nodiscard]] std::optional<std::array<std::int64_t, 2>> pair(const char* key) const;  ///< whole numbers
+  [[nodiscard]] std::optional<glm::dvec2> plan(const char* key) const;                   ///< [x, y]
   [[nodiscard]] std::vector<glm::dvec2> polygon(const char* key) const;                  ///< [[x, y], …]
   [[nodiscard]] std::vector<glm::dvec3> outline(const char* key) const;                  ///< [[x, y, z], …]
   [[nodiscard]] std::optional<ClockTime> time(const char* key) const;  ///< date and time, a zone if stated

@@ -86,7 +86,8 @@ bool isReportFile(const std::string& name) {
     if (name == known) return true;
   }
   return startsAndEnds(name, "view-", ".exr") || startsAndEnds(name, "view-", ".png") ||
-         startsAndEnds(name, "plan-", ".png") || startsAndEnds(name, "points-", ".csv");
+         startsAndEnds(name, "plan-", ".png") || startsAndEnds(name, "points-", ".csv") ||
+         startsAndEnds(name, "photometry-", ".ies") || startsAndEnds(name, "photometry-", ".ldt");
 }
 
 /// The name of something in `folder` that no report of ours holds, or nothing.

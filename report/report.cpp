@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes a report: every file into a new folder, which takes its place when all are there.
+#include <map>
+
 #include <report/report.hpp>
 
 #include "escape.hpp"
@@ -51,8 +53,30 @@ std::vector<std::string> writePlans(const fs::path& folder, const ReportInput& i
   return pictures;
 }
 
-/// Writes a study.toml that works from the finished folder: the model seen from there, sensors' points beside
-/// it.
+/// Writes the photometric files of a study beside it, each once and under a name of its own.
+void writePhotometry(const fs::path& partial, Study& study) {
+  std::map<std::string, std::string> written;  // by the study's name of it
+  std::vector<std::string> stems;
+  for (const LuminaireSettings& luminaire : study.luminaires) {
+    if (!luminaire.file.empty() && written.emplace(luminaire.file, "").second)
+      stems.push_back(fs::path(luminaire.file).stem().string());
+  }
+  const std::vector<std::string> files = safeFileNames(stems);
+  std::size_t next = 0;
+  for (LuminaireSettings& luminaire : study.luminaires) {
+    if (luminaire.file.empty()) continue;
+    std::string& name = written.at(luminaire.file);
+    if (name.empty()) {
+      const bool isIes = luminaire.photometry->format != "EULUMDAT";
+      name = "photometry-" + files.at(next++) + (isIes ? ".ies" : ".ldt");
+      writeFile(partial / name, luminaire.photometry->text);
+    }
+    luminaire.file = name;
+  }
+}
+
+/// Writes a study.toml that works from the finished folder: the model seen from there, sensors' points and
+/// photometric files beside it.
 void writeStudy(const fs::path& partial, const fs::path& folder, const Study& study) {
   Study again = study;
   std::error_code failure;
@@ -67,6 +91,7 @@ void writeStudy(const fs::path& partial, const fs::path& folder, const Study& st
     grid.pointsFile = "points-" + files[g] + ".csv";
     writeFile(partial / grid.pointsFile, pointsCsv(grid.points));
   }
+  writePhotometry(partial, again);
   writeFile(partial / "study.toml", studyToml(again));
 }
 

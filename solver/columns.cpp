@@ -24,6 +24,10 @@ ColumnLayout columnsFor(const Building& building, bool skyIsBright, bool sunShin
                   (!material.glazing || isGrey(material.transmittance));
     layout.electric = layout.electric || material.exitance_lm_m2 != glm::dvec3(0.0);
   }
+  for (const Luminaire& luminaire : building.luminaires) {
+    layout.grey = layout.grey && isGrey(luminaire.color);
+    layout.electric = true;
+  }
   bool seesSky = !building.portals.empty();
   for (const Domain& domain : building.domains) seesSky = seesSky || domain.open;
   layout.sky = (skyIsBright && seesSky) || !layout.electric;

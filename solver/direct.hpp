@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light that a point receives straight from luminous polygons: portals and emitting surfaces.
+// Light that a point receives straight from portals, emitting surfaces and luminaires.
 #pragma once
 
 #include <functional>
@@ -48,5 +48,10 @@ DirectLight<K> directFromPortals(const SolvedLight<K>& light, std::int32_t domai
 template <int K>
 DirectLight<K> directFromEmitters(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& receiver,
                                   const glm::vec3& normal, DirectSamples samples, std::uint64_t key);
+
+/// Illuminance of a point in `domain` from its luminaires, in all by `samples.least` rays or somewhat more.
+template <int K>
+DirectLight<K> directFromLamps(const World& world, std::int32_t domain, const glm::vec3& receiver,
+                               const glm::vec3& normal, DirectSamples samples, std::uint64_t key);
 
 }  // namespace clerestory

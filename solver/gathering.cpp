@@ -33,7 +33,8 @@ SolvedDomain<K> gatheringHR(const SolvedLight<K>& light, std::int32_t domain, Hi
   transport.send(std::vector<Columns<K>>(tree.size()), true);
   solved.inheritSunlight(nodesAtFirst);
   solved.balance.emitted_lm =
-      firstPower_lm + luminanceOf(world.layout.totalColour(transport.enteredPower_lm()));
+      firstPower_lm +
+      luminanceOf(world.layout.totalColour(transport.lampPower_lm() + transport.enteredPower_lm()));
   for (const Received<K>& received : transport.received()) entered_lx.push_back(received.irradiance_lx);
   transport.handOverLinks(1.0F);
   solved.addStatistics(transport.tally(), 0, world.layout.strength(entering_lm), firstWatch.seconds());

@@ -11,6 +11,7 @@
 #include <geometry/sampling.hpp>
 #include <solver/formfactor.hpp>
 
+#include "lamplight.hpp"
 #include "weak.hpp"
 
 namespace clerestory {
@@ -47,6 +48,7 @@ Interactions<K>::Interactions(const SolvedLight<K>& light, std::int32_t domain, 
       tree_(tree),
       unshot_(unshot),
       settings_(settings),
+      domain_(domain),
       isOpen_(world_.building.domains[static_cast<std::size_t>(domain)].open),
       totalWeight_(std::max(tree.weight[0], 1e-20F)) {
   if (!isOpen_) portals_ = portalsOf(light, domain, settings.portalFluxRays);
@@ -56,11 +58,22 @@ Interactions<K>::Interactions(const SolvedLight<K>& light, std::int32_t domain, 
 
 template <int K>
 std::vector<Sender> Interactions<K>::sendersOutside() const {
-  if (!world_.layout.sky) return {};
-  if (isOpen_) return {openSky};
   std::vector<Sender> senders;
+  if (isOpen_ && world_.layout.sky) senders.push_back(openSky);
   for (std::uint32_t i = 0; i < portals_.size(); ++i) senders.push_back(firstPortal + i);
+  for (std::uint32_t i = 0; i < world_.lamps.size(); ++i) {
+    if (world_.lamps[i].domain() == domain_) senders.push_back(firstLamp + i);
+  }
   return senders;
+}
+
+template <int K>
+Columns<K> Interactions<K>::lampFlux_lm() const {
+  glm::dvec3 flux_lm(0.0);
+  for (const Lamp& lamp : world_.lamps) {
+    if (lamp.domain() == domain_) flux_lm += lamp.flux_lm() * lamp.color();
+  }
+  return world_.layout.template light<K>(world_.layout.electricColumn(), flux_lm);
 }
 
 template <int K>
@@ -500,12 +513,14 @@ void Interactions<K>::addToCluster(SixReceived<K>& next, const Receiver& receive
   for (std::size_t k = 0; k < 6; ++k) next[k] += alongDirection(direction, k) * arriving;
 }
 
-// Light that no node of the tree sends: from the portals, or from the sky where no glass is between.
+// Light that no node of the tree sends: from portals and luminaires, or from the sky where no glass is
+// between.
 template <int K>
 Verdict Interactions<K>::receiveFromOutside(const Receiver& receiver, Sender sender, Incoming<K>& incoming,
                                             Tally& tally) const {
-  return sender == openSky ? receiveFromSky(receiver, incoming, tally)
-                           : receiveFromPortal(receiver, portals_[sender - firstPortal], incoming, tally);
+  if (sender == openSky) return receiveFromSky(receiver, incoming, tally);
+  if (sender >= firstLamp) return receiveFromLamp(receiver, sender - firstLamp, incoming, tally);
+  return receiveFromPortal(receiver, portals_[sender - firstPortal], incoming, tally);
 }
 
 template <int K>
@@ -564,6 +579,47 @@ Verdict Interactions<K>::receiveFromPortal(const Receiver& receiver, const Porta
   // A shadow that slips between the few spots does not slip between the samples.
   if (isUneven(light.visible)) return Verdict::refineReceiver;
   incoming.own.irradiance_lx += light.illuminance_lx;
+  return Verdict::accept;
+}
+
+// As from a portal, but by the intensities of a luminaire, whose unshadowed light is known at any point.
+template <int K>
+Verdict Interactions<K>::receiveFromLamp(const Receiver& receiver, std::uint32_t number,
+                                         Incoming<K>& incoming, Tally& tally) const {
+  constexpr float fewest = 4.0F;
+  constexpr float most = 64.0F;
+  const Lamp& lamp = world_.lamps[number];
+  const auto light = [&](float illuminance_lx) {
+    return world_.layout.template light<K>(world_.layout.electricColumn(),
+                                           static_cast<double>(illuminance_lx) * lamp.color());
+  };
+  const LampSight sight = lookAtLamp(lamp, receiver);
+  const float power_lm = sight.light_lx * receiver.weight;
+  if (receiver.isCluster()) {
+    if (sight.light_lx <= 0.0F) return Verdict::nothing;
+    if (0.5F * power_lm > threshold_lm) return Verdict::refineReceiver;
+    const auto six = clusterLightFromLamp(world_, lamp, tree_, receiver.node);
+    for (std::size_t k = 0; k < 6; ++k) (*incoming.six)[k].irradiance_lx += light(six[k]);
+    tally.rays += spotsOfNode;
+    return Verdict::accept;
+  }
+  const float riseError_lm = linearDeviation * sight.rise_lx * receiver.weight;
+  const auto isUneven = [&](float visible) {
+    const float shadowError_lm = 0.5F * power_lm * std::sqrt(visible * std::max(1.0F - visible, 0.0F));
+    return std::max(visible * riseError_lm, shadowError_lm) > threshold_lm && canDivide(receiver);
+  };
+  if (std::max(power_lm, riseError_lm) > threshold_lm) {
+    tally.rays += spotsOfNode;
+    if (isUneven(seenOfLamp(world_, lamp, receiver, firstLamp + number))) return Verdict::refineReceiver;
+  }
+  if (sight.light_lx <= 0.0F) return Verdict::nothing;
+  const float samples = std::clamp(power_lm / threshold_lm, fewest, most);
+  const LampLight own = elementLightFromLamp(world_, lamp, receiver, sight,
+                                             static_cast<std::uint32_t>(samples), firstLamp + number);
+  tally.rays += static_cast<std::uint64_t>(samples);
+  // A shadow that slips between the few spots does not slip between the samples.
+  if (isUneven(own.visible)) return Verdict::refineReceiver;
+  incoming.own.irradiance_lx += light(own.illuminance_lx);
   return Verdict::accept;
 }
 

@@ -89,9 +89,11 @@ struct Tally {
 /// Answers of the oracle.
 enum class Verdict { nothing, accept, weak, refineSender, refineReceiver };
 
-/// An end of an interaction that sends: a node of the tree, the open sky, or a portal of the domain.
+/// An end of an interaction that sends: a node of the tree, the open sky, a portal of the domain, or a
+/// luminaire.
 using Sender = std::uint32_t;
 inline constexpr Sender firstPortal = 0x80000000U;
+inline constexpr Sender firstLamp = 0xc0000000U;
 inline constexpr Sender openSky = 0xfffffffeU;
 
 /// A link that the oracle has not refused on sight; its visibility is to be asked for, or known.
@@ -158,14 +160,16 @@ class Interactions {
   /// What the weak senders bring.
   Received<K> receiveWeak(const Receiver& receiver, WeakSenders& weak, Tally& tally) const;
 
-  /// Light from a portal or the open sky: judged, and on `accept` added at once.
+  /// Light from a portal, a luminaire or the open sky: judged, and on `accept` added at once.
   Verdict receiveFromOutside(const Receiver& receiver, Sender sender, Incoming<K>& incoming,
                              Tally& tally) const;
 
-  /// Portals of the domain, or the open sky.
+  /// Portals of the domain or the open sky, and luminaires.
   [[nodiscard]] std::vector<Sender> sendersOutside() const;
   /// Light that enters by the portals. [lm]
   [[nodiscard]] Columns<K> portalFlux_lm() const;
+  /// Light of the domain's luminaires. [lm]
+  [[nodiscard]] Columns<K> lampFlux_lm() const;
 
  private:
   /// What the oracle sees of a sender.
@@ -204,11 +208,15 @@ class Interactions {
   Verdict receiveFromPortal(const Receiver& receiver, const PortalSender<K>& portal, Incoming<K>& incoming,
                             Tally& tally) const;
 
+  Verdict receiveFromLamp(const Receiver& receiver, std::uint32_t lamp, Incoming<K>& incoming,
+                          Tally& tally) const;
+
   const SolvedLight<K>& light_;
   const World& world_;
   const Hierarchy& tree_;
   const Unshot<K>& unshot_;
   const TransportSettings& settings_;
+  std::int32_t domain_;
   bool isOpen_;
   float totalWeight_;
   std::vector<PortalSender<K>> portals_;

@@ -47,10 +47,13 @@ template <int K>
 std::vector<PortalSender<K>> portalsOf(const SolvedLight<K>& light, std::int32_t domain, std::uint32_t rays) {
   const World& world = light.world();
   std::vector<PortalSender<K>> senders;
-  if (!world.layout.sky) return senders;
   for (std::uint32_t i = 0; i < world.building.portals.size(); ++i) {
     const Portal& portal = world.building.portals[i];
     if (portal.inside != domain) continue;
+    const bool isLitOutside =
+        world.layout.sky || std::any_of(world.lamps.begin(), world.lamps.end(),
+                                        [&](const Lamp& lamp) { return lamp.domain() == portal.outside; });
+    if (!isLitOutside) continue;
     PortalSender<K> sender{};
     sender.portal = i;
     sender.polygon = world.polygon(portal.piece);

@@ -81,7 +81,9 @@ Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::
       directFromPortals(light, domain, point, normal, settings.direct, mixKeys(key, 1));
   const DirectLight<K> fromEmitters =
       directFromEmitters(light, domain, point, normal, settings.direct, mixKeys(key, 2));
-  result.direct_lx = fromPortals.illuminance_lx + fromEmitters.illuminance_lx;
+  const DirectLight<K> fromLamps =
+      directFromLamps<K>(world, domain, point, normal, settings.direct, mixKeys(key, 4));
+  result.direct_lx = fromPortals.illuminance_lx + fromEmitters.illuminance_lx + fromLamps.illuminance_lx;
 
   const bool isOpen = world.building.domains[static_cast<std::size_t>(domain)].open;
   const Sequence sequence(mixKeys(key, 3));
@@ -105,7 +107,8 @@ Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::
     result.reflected_lx = scale * reflected_cd_m2;
     result.reflectedDeviation_lx = std::numbers::pi_v<float> * deviationOfMean(strengths, counts);
   }
-  result.directDeviation_lx = std::hypot(fromPortals.deviation_lx, fromEmitters.deviation_lx);
+  result.directDeviation_lx =
+      std::hypot(fromPortals.deviation_lx, fromEmitters.deviation_lx, fromLamps.deviation_lx);
   return result;
 }
 

@@ -61,7 +61,8 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
     transport.send(unshot, step == 1);
     if (step == 1)
       solved.balance.emitted_lm =
-          first_lm + luminanceOf(world.layout.totalColour(transport.enteredPower_lm()));
+          first_lm +
+          luminanceOf(world.layout.totalColour(transport.lampPower_lm() + transport.enteredPower_lm()));
     inheritValues(tree, nodesBefore, sum);
     solved.inheritSunlight(nodesBefore);
     unshot.resize(tree.size());

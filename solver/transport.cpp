@@ -31,10 +31,11 @@ Transport<K>::Transport(const SolvedLight<K>& light, std::int32_t domain, Radios
 
 template <int K>
 Columns<K> Transport<K>::enteringPower_lm() const {
-  if (!isOpen_) return interactions_.portalFlux_lm();
-  return world_.layout.template light<K>(
-      world_.layout.skyColumn(),
-      glm::dvec3(0.5 * world_.sky.horizontalIlluminance_lx() * static_cast<double>(tree_.area_m2[0])));
+  if (!isOpen_) return interactions_.portalFlux_lm() + interactions_.lampFlux_lm();
+  return interactions_.lampFlux_lm() +
+         world_.layout.template light<K>(
+             world_.layout.skyColumn(),
+             glm::dvec3(0.5 * world_.sky.horizontalIlluminance_lx() * static_cast<double>(tree_.area_m2[0])));
 }
 
 template <int K>
@@ -46,7 +47,9 @@ void Transport<K>::setFirstLight(float firstLight_lm) {
 template <int K>
 void Transport<K>::send(const std::vector<Columns<K>>& leaves, bool withOutside) {
   pull(leaves);
-  const Columns<K> entering_lm = withOutside && !isOpen_ ? interactions_.portalFlux_lm() : Columns<K>{};
+  const bool enters = withOutside && !isOpen_;
+  const Columns<K> entering_lm = enters ? interactions_.portalFlux_lm() : Columns<K>{};
+  const Columns<K> lamps_lm = enters ? interactions_.lampFlux_lm() : Columns<K>{};
   std::vector<Sender> senders;
   if (links_ == Links::madeAnew || cache_.size() == 0) senders.push_back(0);
   if (withOutside) {
@@ -56,7 +59,7 @@ void Transport<K>::send(const std::vector<Columns<K>>& leaves, bool withOutside)
   transportLight(std::move(senders));
   mergeGrown();
   pushPull();
-  mend(powerOf(unshot_.radiosity_lm_m2), entering_lm);
+  mend(powerOf(unshot_.radiosity_lm_m2), entering_lm, lamps_lm);
 }
 
 template <int K>
@@ -319,21 +322,23 @@ std::size_t Transport<K>::valueBytes(const Hierarchy& tree) {
 
 // In a closed domain all power sent is received. Sampled visibility misses that by some tenths of a per cent,
 // which a bright room's hundred reflections would add up. Light from outside has only one step to be missed
-// in, and its receivers know it better than the rays through the panes do: it stays as it was received.
+// in, and its receivers know it better than the rays through the panes do: it stays as it was received. So
+// does that of luminaires, a part of which may end in what is drawn of them.
 template <int K>
-void Transport<K>::mend(const Columns<K>& sent_lm, const Columns<K>& entering_lm) {
+void Transport<K>::mend(const Columns<K>& sent_lm, const Columns<K>& entering_lm,
+                        const Columns<K>& lamps_lm) {
   closeViews();
   entered_lm_ = {};
   if (isOpen_) return;
   const Columns<K> power_lm = receivedPower();
-  const double expected_lm = static_cast<double>(world_.layout.strength(sent_lm + entering_lm));
+  const double expected_lm = static_cast<double>(world_.layout.strength(sent_lm + entering_lm + lamps_lm));
   missed_lm_ += std::abs(expected_lm - static_cast<double>(world_.layout.strength(power_lm)));
   sent_lm_ += expected_lm;
   Columns<K> factor;
   for (int c = 0; c < K; ++c) {
     const bool enters = entering_lm[c] > 0.0F;
-    if (enters) entered_lm_[c] = power_lm[c];
-    const bool keeps = enters || world_.rays.hasInnerGlass() || !(power_lm[c] > 0.0F);
+    if (enters) entered_lm_[c] = std::max(power_lm[c] - sent_lm[c] - lamps_lm[c], 0.0F);
+    const bool keeps = enters || lamps_lm[c] > 0.0F || world_.rays.hasInnerGlass() || !(power_lm[c] > 0.0F);
     factor[c] = keeps ? 1.0F : std::clamp(sent_lm[c] / power_lm[c], 0.5F, 2.0F);
   }
   for (Received<K>& received : received_) received.irradiance_lx *= factor;

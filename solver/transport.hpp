@@ -28,7 +28,7 @@ class Transport {
             const TransportSettings& settings, LinkCache& cache, Links links);
 
   /// Sends the radiosity that `leaves` (#nodes; leaves alone count) hold, and with it the light from outside
-  /// if `withOutside`. Afterwards received() is what it has brought to each leaf.
+  /// and of luminaires if `withOutside`. Afterwards received() is what it has brought to each leaf.
   void send(const std::vector<Columns<K>>& leaves, bool withOutside);
 
   /// Irradiance of each node; leaves hold all of what they got. #nodes
@@ -38,8 +38,10 @@ class Transport {
 
   /// Power of what leaves hold, summed over the domain. [lm]
   [[nodiscard]] Columns<K> powerOf(const std::vector<Columns<K>>& perNode) const;
-  /// Power of the light that enters from outside, an estimate in open domains. [lm]
+  /// Power of the light that enters from outside, an estimate in open domains, and that of luminaires. [lm]
   [[nodiscard]] Columns<K> enteringPower_lm() const;
+  /// Power of the domain's luminaires. [lm]
+  [[nodiscard]] Columns<K> lampPower_lm() const { return interactions_.lampFlux_lm(); }
   /// Power that the last `send` brought in through portals, as its receivers add it up. [lm]
   [[nodiscard]] const Columns<K>& enteredPower_lm() const { return entered_lm_; }
   /// Sets what one interaction may err by, from the light that the domain starts with. [lm]
@@ -83,7 +85,7 @@ class Transport {
   void mergeGrown();
   void pushPull();
   void pull(const std::vector<Columns<K>>& leaves);
-  void mend(const Columns<K>& sent_lm, const Columns<K>& entering_lm);
+  void mend(const Columns<K>& sent_lm, const Columns<K>& entering_lm, const Columns<K>& lamps_lm);
   void closeViews();
   void evenViews();
   [[nodiscard]] Columns<K> receivedPower() const;

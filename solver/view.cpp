@@ -192,6 +192,9 @@ class Picture {
   [[nodiscard]] glm::dvec3 luminanceAt(float x, float y, std::uint64_t key) const {
     const glm::vec3 direction = camera_.ray(x, y);
     const auto hit = world_.rays.nearest(camera_.eye, direction, RayScene::Barrier::opaqueAndGlass);
+    // A millimetre, since an opening often lies in the surface that it is fixed to.
+    const auto lamp = lampLuminance(world_, camera_.eye, direction, hit.distance_m + 1e-3F);
+    if (lamp) return *lamp;
     const std::int32_t domain = hit ? world_.building.sideDomain[hit.side()] : -1;
     const bool isSolved = domain >= 0 && light_.of(domain) != nullptr;
     if (!hit || world_.materialOf(hit.piece).glazing || !isSolved) {

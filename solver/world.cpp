@@ -26,6 +26,7 @@ World::World(const Building& buildingIn, const Study& study, const Daylight& day
       sky(daylight.sky),
       sun(beamOf(daylight, study.groundReflectance)),
       layout(columnsFor(buildingIn, sky.horizontalIlluminance_lx() > 0.0, sun.has_value())),
+      lamps(lampsOf(buildingIn, rays.origin())),
       portalFactor_(static_cast<float>(study.dirtFactor * study.frameFactor)) {
   for (const Material& material : building.model.materials) {
     glass_.emplace_back();

@@ -12,6 +12,7 @@
 #include <solver/glass.hpp>
 
 #include "columns.hpp"
+#include "lamps.hpp"
 
 namespace clerestory {
 
@@ -31,6 +32,7 @@ class World {
   Sky sky;
   std::optional<SunBeam> sun;  ///< where it shines
   ColumnLayout layout;
+  std::vector<Lamp> lamps;
 
   [[nodiscard]] const Pieces& pieces() const { return building.model.pieces; }
   [[nodiscard]] const Material& materialOf(std::uint32_t piece) const {

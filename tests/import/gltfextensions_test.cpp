@@ -223,6 +223,14 @@ TEST(GltfExtensions, ReadsLamps) {
   EXPECT_EQ(spot.outerCone_rad, 0.6);
   EXPECT_EQ(scene.lights[1].name, "sun");
   expectNear(scene.lights[1].direction, glm::dvec3(0, 1, 0));
+  EXPECT_EQ(countOf(scene.diagnoses, "C132"), 1U);
+  const std::vector<Luminaire> luminaires = luminairesOf(scene.lights);
+  ASSERT_EQ(luminaires.size(), 1U);
+  const double luminous_cd = 0.2126 * 800 + 0.7152 * 400;
+  EXPECT_NEAR(luminaires[0].photometry->distribution.intensity({0, 0, -1}), luminous_cd, 1e-9);
+  EXPECT_EQ(luminaires[0].photometry->distribution.intensity({1, 0, 0}), 0.0);
+  expectNear(luminaires[0].color, glm::dvec3(800, 400, 0) / luminous_cd);
+  expectNear(luminaires[0].axes[2], glm::dvec3(0, 0, 1));
   parts.nodes = R"([{"mesh":0,"extensions":{"KHR_lights_punctual":{"light":2}}}])";
   EXPECT_TRUE(contains(errorOf(parts), "names light 2"));
 }

@@ -249,7 +249,7 @@ TEST(Study, RefusesWrongTypesAndRanges) {
 }
 
 TEST(Study, SaysWhatThisVersionCannotDo) {
-  for (const std::string text : {"[[luminaire]]\nfile = \"a.ies\"\n", "[[grid]]\nsurface = \"floor*\"\n",
+  for (const std::string text : {"[[grid]]\nsurface = \"floor*\"\n",
                                  "[[view]]\nprojection = \"fisheye\"\neye = [0, 0, 0]\ntarget = [0, 1, 0]\n",
                                  "[accuracy]\ntime_limit_s = 5\n"}) {
     const std::string message = errorOfText(kModel + text);
@@ -258,6 +258,52 @@ TEST(Study, SaysWhatThisVersionCannotDo) {
   }
   const Study study = readText(kModel + "[report]\nnorms = [\"leed\"]\n");
   EXPECT_TRUE(contains(study.assumptions.at(0), "leed"));
+}
+
+TEST(Study, PlacesLuminaires) {
+  const TempFolder temp;
+  temp.write("lamps/down.ies", "TILT=NONE\n1 1000 1 2 1 1 2 0 0 0\n1 1 9\n0 90\n0\n100 0\n");
+  const auto file = temp.write("study.toml", kModel +
+                                                 "[[luminaire]]\nfile = \"lamps/down.ies\"\n"
+                                                 "position = [1, 2, 3]\naim = [0, 2, 0]\nrotation = 90\n"
+                                                 "flux_factor = 0.8\n"
+                                                 "array = { count = [3, 2], step = [1.5, -2] }\n"
+                                                 "[[luminaire]]\nname = \"bulb\"\nintensity_cd = 50\n"
+                                                 "position = [0, 0, 1]\n"
+                                                 "[[luminaire]]\nintensity_cd = 50\nlambertian = true\n"
+                                                 "flux_factor = 0\nposition = [0, 0, 1]\n");
+  const Study study = readStudy(file);
+  ASSERT_EQ(study.luminaires.size(), 3U);
+  const std::vector<Luminaire> luminaires = luminairesOf(study);
+  ASSERT_EQ(luminaires.size(), 7U);  // one is switched off
+  EXPECT_EQ(luminaires[5].position_m, glm::dvec3(4, 0, 3));
+  EXPECT_EQ(luminaires[5].name, "Luminaire 1");
+  EXPECT_EQ(luminaires[5].factor, 0.8);
+  EXPECT_NEAR(luminaires[5].axes[0].z, 1.0, 1e-12);  // C0 was turned to +y, then raised with the aim
+  EXPECT_EQ(luminaires[5].photometry.get(), luminaires[0].photometry.get());
+  EXPECT_NEAR(luminaires[6].flux_lm(), 628.3185, 1e-3);
+  Study again = readStudy(temp.write("again.toml", studyToml(study)));
+  again.assumptions = study.assumptions;
+  EXPECT_EQ(studyToml(again), studyToml(study));
+}
+
+TEST(Study, RefusesLuminairesThatCannotBe) {
+  for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
+           {"position = [0, 0, 1]\n", "needs either file"},
+           {"intensity_cd = 5\n", "needs position"},
+           {"file = \"a.ies\"\nintensity_cd = 5\nposition = [0, 0, 1]\n", "needs either file"},
+           {"file = \"gone.ies\"\nposition = [0, 0, 1]\n", "photometric file \"gone.ies\" not found"},
+           {"file = \"../a.ies\"\nposition = [0, 0, 1]\n", "in the study's folder"},
+           {"file = \"a.txt\"\nlambertian = true\nposition = [0, 0, 1]\n", "goes with intensity_cd"},
+           {"intensity_cd = 0\nposition = [0, 0, 1]\n", "intensity_cd"},
+           {"intensity_cd = 5\nposition = [0, 0, 1]\naim = [0, 0, 0]\n", "aim has no length"},
+           {"intensity_cd = 5\nposition = [0, 0, 1]\narray = { count = [2, 0], step = [1, 1] }\n", "count"},
+           {"intensity_cd = 5\nposition = [0, 0, 1]\narray = { count = [2, 2] }\n", "needs count"},
+           {"intensity_cd = 5\nposition = [0, 0, 1]\nflux_facter = 3\n", "flux_factor"}}) {
+    const std::string message = errorOfText(kModel + "[[luminaire]]\n" + text);
+    EXPECT_TRUE(contains(message, "study.toml:")) << message;
+    EXPECT_TRUE(contains(message, says)) << text << message;
+  }
 }
 
 TEST(Study, SaysWhereItIsNoToml) {

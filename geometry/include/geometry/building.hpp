@@ -50,6 +50,7 @@ struct CleanModel {
   Pieces pieces;
   std::vector<Surface> surfaces;
   std::vector<Material> materials;
+  std::vector<Luminaire> luminaires;  ///< that the model holds
   CleanupCounts counts;
   std::vector<Diagnosis> diagnoses;
 };
@@ -58,7 +59,7 @@ CleanModel cleanScene(const Scene& scene);
 /// Air that is connected without crossing glass, or the outside.
 struct Domain {
   bool open = false;       ///< the sky is seen without glass from somewhere in it; at most one domain is
-  bool lit = false;        ///< light reaches it: it is open, or has a portal or an emitter
+  bool lit = false;        ///< light reaches it: it is open, or has a portal, an emitter or a luminaire
   double area_m2 = 0.0;    ///< of all its sides
   double escape_m2 = 0.0;  ///< of that, the share that sees no piece
 };
@@ -97,10 +98,12 @@ struct Building {
   std::vector<bool> innerGlass;  ///< per piece: glass within one domain, lets light through
   std::vector<Room> rooms;
   std::vector<SensorGrid> grids;
+  std::vector<Luminaire> luminaires;          ///< the model's and the study's
+  std::vector<std::int32_t> luminaireDomain;  ///< #luminaires: domain, or -1 within something solid
   std::vector<Diagnosis> diagnoses;
 };
 
-/// Finds domains, portals and rooms in a clean model and lays the study's sensor grids.
+/// Finds domains, portals and rooms in a clean model, places luminaires and lays the study's sensor grids.
 Building makeBuilding(CleanModel model, const Study& study);
 
 }  // namespace clerestory

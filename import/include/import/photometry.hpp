@@ -31,6 +31,10 @@ struct IntensityDistribution {
 
   /// In a unit direction, in the luminaire's axes. [cd]
   [[nodiscard]] double intensity(const glm::dvec3& direction) const;
+  /// Where latitude 90 lies, in the luminaire's axes.
+  [[nodiscard]] glm::dvec3 pole() const;
+  /// Of a unit direction, whichever of the grid's latitudes are listed. [degrees]
+  [[nodiscard]] double latitudeOf(const glm::dvec3& direction) const;
   /// Integral over all directions, exact for what lies between the angles. [lm]
   [[nodiscard]] double flux_lm() const;
 };

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <import/error.hpp>
+#include <import/luminaire.hpp>
 
 namespace clerestory {
 
@@ -89,6 +90,9 @@ struct PunctualLight {
   double innerCone_rad = 0.0;  ///< spot: full intensity up to this angle from the axis,
   double outerCone_rad = 0.0;  ///< none from this one on
 };
+
+/// Point and spot lights as luminaires without extent. Those that are dark are left out.
+std::vector<Luminaire> luminairesOf(const std::vector<PunctualLight>& lights);
 
 /// One model. Coordinates are metres, z up, from the model's own origin.
 struct Scene {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <import/luminaire.hpp>
 #include <import/scene.hpp>
 
 namespace clerestory {
@@ -67,6 +68,21 @@ struct GridSettings {
   double inset_m = 0.0;
 };
 
+/// `[[luminaire]]`: one luminaire, or an array of equal ones.
+struct LuminaireSettings {
+  std::string name;
+  std::string file;           ///< photometric, as the study names it; empty: an intensity is stated
+  double intensity_cd = 0.0;  ///< of a point source, everywhere or …
+  bool lambertian = false;    ///< … as the cosine has it
+  std::shared_ptr<const Photometry> photometry;
+  glm::dvec3 position_m{0.0};      ///< of the first in the array
+  glm::dvec3 aim{0.0, 0.0, -1.0};  ///< where its nadir points, of any length
+  double rotation_deg = 0.0;       ///< of C0, from +x towards +y
+  double fluxFactor = 1.0;         ///< ballast and maintenance
+  std::array<int, 2> count{1, 1};  ///< along x and y
+  glm::dvec2 step_m{0.0};
+};
+
 struct ViewSettings {
   std::string name;
   glm::dvec3 eye_m{0.0};
@@ -90,6 +106,7 @@ struct Study {
   std::vector<std::vector<glm::dvec3>> openings;  ///< outlines of holes in the envelope, without glass
   double dirtFactor = 1.0;                        ///< on every portal's transmittance
   double frameFactor = 1.0;                       ///< likewise; 1 where the model draws its frames
+  std::vector<LuminaireSettings> luminaires;
   std::vector<GridSettings> grids;
   std::vector<ViewSettings> views;
   double accuracy = 0.05;  ///< asked 95th percentile of the sensors' relative errors
@@ -101,11 +118,14 @@ struct Study {
 std::string clockTimeText(const ClockTime& time);
 
 /// Reads a study. Unknown keys are an error that names the nearest known one; keys of later versions
-/// (luminaires) are an error that says so. Throws InputError with file and line.
+/// are an error that says so. Throws InputError with file and line.
 Study readStudy(const std::filesystem::path& file);
 
 /// The study of a model alone: overcast sky of 10,000 lx, a grid 0.85 m above each floor.
 Study studyOfModel(const std::filesystem::path& modelFile);
+
+/// The luminaires of a study in their places, arrays laid out.
+std::vector<Luminaire> luminairesOf(const Study& study);
 
 /// "5%", "draft", "standard" or "fine" as a fraction; empty where it is none of them.
 std::optional<double> parseAccuracy(const std::string& text);
