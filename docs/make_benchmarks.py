@@ -8,6 +8,7 @@
   docs/make_benchmarks.py build/release station        its section 5.4
   docs/make_benchmarks.py build/release growth         finer furniture, the same light
   docs/make_benchmarks.py build/release columns        what more columns cost
+  docs/make_benchmarks.py build/release importance     importance where few figures are asked for
 
 The figures for the text are printed as Markdown. With --draw-only the tables are taken as they are. Scenes and
 what is kept between runs lie in BUILD/bench. Needs nothing but Python 3.9.
@@ -290,12 +291,39 @@ def show_columns():
           "--title", "What more columns cost", "--y-label", "CPU time, of one column's")
 
 
+def measure_importance(build, folder):
+    floor = folder / "floor.obj"  # of the floor of twelve offices, which is not in the repository
+    run([build / "bench_importance", "--folder", folder, *(["--floor", floor] if floor.exists() else [])])
+    return ["importance.csv"]
+
+
+def show_importance():
+    rows = []
+    every = rows_of("importance.csv")
+    for scene in dict.fromkeys(row["scene"] for row in every):
+        own = [row for row in every if row["scene"] == scene]
+        area, asked = ([row for row in own if row["weights"] == weights] for weights in ("by area", "with importance"))
+        for error in common_errors(area, asked):
+            links = [cost_at(runs, error, "links") for runs in (area, asked)]
+            time = [cost_at(runs, error, "cpu_seconds") for runs in (area, asked)]
+            if None in links + time:
+                continue
+            rows.append([scene, f"{error}", grouped(links[0]), grouped(links[1]), f"{links[1] / links[0]:.2f}",
+                         f"{time[0]:.3f}", f"{time[1]:.3f}", f"{time[1] / time[0]:.2f}"])
+        chart("importance.csv", f"importance-{scene.replace(' ', '-')}.svg", "-x", "cpu_seconds", "-y", "error_pct",
+              "--series", "weights", "--filter", f"scene={scene}", "--front", "--title", f"Importance: {scene}",
+              "--x-label", "CPU s", "--y-label", "error of the sensors asked for, RMS, %")
+    print_table(["scene", "error, %", "links by area", "with importance", "ratio", "CPU s by area", "with importance",
+                 "ratio"], rows)
+
+
 BENCHMARKS = {
     "paper": (measure_paper, show_paper),
     "convergence": (measure_convergence, show_convergence),
     "station": (measure_station, show_station),
     "growth": (measure_growth, show_growth),
     "columns": (measure_columns, show_columns),
+    "importance": (measure_importance, show_importance),
 }
 
 

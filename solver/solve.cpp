@@ -7,6 +7,7 @@
 #include <geometry/parallel.hpp>
 #include <solver/solution.hpp>
 
+#include "importance.hpp"
 #include "outside.hpp"
 #include "reconstruction.hpp"
 #include "rooms.hpp"
@@ -79,7 +80,8 @@ void solveDomains(const World& world, const Study& study, const SolveOptions& op
     arePanesLit = arePanesLit || !air.open;
     report(options, "light", static_cast<double>(domain) / count);
     Hierarchy tree = air.open ? outsideTree(world, study, domain, sides)
-                              : Hierarchy(world.pieces(), sides, world.rays.origin(), {});
+                              : Hierarchy(world.pieces(), sides, world.rays.origin(),
+                                          importanceOf(world, study, domain, sides));
     LinkCache cache(options.linkCacheBytes);
     SolvedDomain<K> solved = shootingHR(light, domain, std::move(tree), tuning.transport, cache);
     solution.iterations.insert(solution.iterations.end(), solved.statistics.begin(), solved.statistics.end());

@@ -3,6 +3,7 @@
 #include "surfaces.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -40,6 +41,11 @@ void drawElement(const ColumnLayout& layout, const Radiosity<K>& radiosity, Node
   mesh.firstCorner.push_back(static_cast<std::uint32_t>(mesh.corners_m.size()));
 }
 
+/// A row while it is added up.
+struct Row : SurfaceValue {
+  double weight = 0.0;  ///< in the oracle; outdoors, and where nothing matters more than the rest, the area
+};
+
 }  // namespace
 
 template <int K>
@@ -47,7 +53,7 @@ std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double so
                                           ElementMesh& mesh) {
   const World& world = light.world();
   const Building& building = world.building;
-  std::map<std::pair<std::int32_t, std::uint32_t>, SurfaceValue> rows;
+  std::map<std::pair<std::int32_t, std::uint32_t>, Row> rows;
   std::vector<const SurfaceValue*> rowOfElement;
   mesh = {};
   mesh.origin_m = world.rays.origin();
@@ -62,7 +68,9 @@ std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double so
       // Outdoors only what somebody looks at was solved.
       if (tree.weight[tree.sides[tree.treeSide[node]].root] <= 0.0F) continue;
       const std::uint32_t piece = tree.sides[tree.treeSide[node]].side / 2;
-      SurfaceValue& row = rows[{order, world.pieces().surface[piece]}];
+      Row& row = rows[{order, world.pieces().surface[piece]}];
+      const bool isOpen = building.domains[static_cast<std::size_t>(domain)].open;
+      row.weight += static_cast<double>(isOpen ? tree.area_m2[node] : tree.weight[node]);
       const auto area_m2 = static_cast<double>(tree.area_m2[node]);
       const Columns<K> irradiance_lx =
           radiosity->irradiance_lx[node] + radiosity->sunlightOf(world.layout, node);
@@ -90,7 +98,8 @@ std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double so
     place[&row] = static_cast<std::uint32_t>(result.size());
     row.illuminanceMean_lx /= row.area_m2;
     row.exitanceMean_lm_m2 /= row.area_m2;
-    row.error_lx = solverError * row.illuminanceMean_lx;
+    // What weighs less than its area is solved as at an accuracy that is lower by the root of that.
+    row.error_lx = solverError * row.illuminanceMean_lx * std::sqrt(std::max(row.area_m2 / row.weight, 1.0));
     result.push_back(row);
   }
   for (const SurfaceValue* row : rowOfElement) mesh.surfaceRow.push_back(place[row]);
