@@ -322,8 +322,8 @@ std::size_t Transport<K>::valueBytes(const Hierarchy& tree) {
 
 // In a closed domain all power sent is received. Sampled visibility misses that by some tenths of a per cent,
 // which a bright room's hundred reflections would add up. Light from outside has only one step to be missed
-// in, and its receivers know it better than the rays through the panes do: it stays as it was received. So
-// does that of luminaires, a part of which may end in what is drawn of them.
+// in, and its receivers know it better than the rays through the panes do: it stays as it was received. Of
+// luminaires the lumens are known.
 template <int K>
 void Transport<K>::mend(const Columns<K>& sent_lm, const Columns<K>& entering_lm,
                         const Columns<K>& lamps_lm) {
@@ -338,8 +338,8 @@ void Transport<K>::mend(const Columns<K>& sent_lm, const Columns<K>& entering_lm
   for (int c = 0; c < K; ++c) {
     const bool enters = entering_lm[c] > 0.0F;
     if (enters) entered_lm_[c] = std::max(power_lm[c] - sent_lm[c] - lamps_lm[c], 0.0F);
-    const bool keeps = enters || lamps_lm[c] > 0.0F || world_.rays.hasInnerGlass() || !(power_lm[c] > 0.0F);
-    factor[c] = keeps ? 1.0F : std::clamp(sent_lm[c] / power_lm[c], 0.5F, 2.0F);
+    const bool keeps = enters || world_.rays.hasInnerGlass() || !(power_lm[c] > 0.0F);
+    factor[c] = keeps ? 1.0F : std::clamp((sent_lm[c] + lamps_lm[c]) / power_lm[c], 0.5F, 2.0F);
   }
   for (Received<K>& received : received_) received.irradiance_lx *= factor;
 }
