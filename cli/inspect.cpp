@@ -6,9 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <iomanip>
 #include <memory>
 #include <sstream>
+#include <system_error>
+
+#include <report/storeyplan.hpp>
 
 #include "input.hpp"
 #include "progress.hpp"
@@ -67,6 +72,22 @@ std::vector<CleanupRow> cleanupRows(const CleanupCounts& counts) {
           {"pieces", "convex pieces of these", counts.pieces}};
 }
 
+/// Panes that light a room from outside.
+struct RoomWindows {
+  std::size_t panes = 0;
+  double area_m2 = 0.0;
+};
+
+RoomWindows windowsOf(const Building& building, std::int32_t room) {
+  RoomWindows windows;
+  for (const Portal& portal : building.portals) {
+    if (portal.room != room) continue;
+    ++windows.panes;
+    windows.area_m2 += building.model.pieces.area_m2[portal.piece];
+  }
+  return windows;
+}
+
 Json vectorJson(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
@@ -98,12 +119,24 @@ Json inspectionJson(const Building& building, const Totals& totals, const std::v
   }
   json["portals"] = {{"count", building.portals.size()}, {"area_m2", totals.portalArea_m2}};
   json["rooms"] = Json::array();
-  for (const Room& room : building.rooms) {
+  for (std::size_t i = 0; i < building.rooms.size(); ++i) {
+    const Room& room = building.rooms[i];
+    const RoomWindows windows = windowsOf(building, static_cast<std::int32_t>(i));
     json["rooms"].push_back({{"name", room.name},
                              {"domain", room.domain},
                              {"floor_area_m2", room.floorArea_m2},
                              {"volume_m3", room.volume_m3},
-                             {"floor_m", room.floor_m}});
+                             {"floor_m", room.floor_m},
+                             {"ceiling_m", room.ceiling_m},
+                             {"panes", windows.panes},
+                             {"panes_m2", windows.area_m2}});
+  }
+  json["openings"] = Json::array();
+  for (const RoomBorder& border : building.borders) {
+    json["openings"].push_back({{"rooms", {border.rooms[0], border.rooms[1]}},
+                                {"from_m", vectorJson(border.from_m)},
+                                {"to_m", vectorJson(border.to_m)},
+                                {"height_m", border.height_m}});
   }
   json["diagnoses"] = Json::array();
   for (const Diagnosis& diagnosis : diagnoses) {
@@ -184,21 +217,42 @@ std::string materialsText(const Building& building, const Totals& totals) {
 }
 
 std::string roomsText(const Building& building) {
-  Table table({"room", "floor m2", "volume m3", "floor at m", "air"});
-  for (const Room& room : building.rooms) {
+  Table table(
+      {"room", "floor m2", "volume m3", "floor at m", "ceiling at m", "panes", "panes m2", "opens to"});
+  for (std::size_t i = 0; i < building.rooms.size(); ++i) {
+    const Room& room = building.rooms[i];
+    const RoomWindows windows = windowsOf(building, static_cast<std::int32_t>(i));
+    std::string opensTo;
+    for (const RoomBorder& border : building.borders) {
+      for (const int end : {0, 1}) {
+        if (border.rooms[end] != static_cast<std::int32_t>(i)) continue;
+        opensTo += (opensTo.empty() ? "" : ", ") +
+                   printable(building.rooms[static_cast<std::size_t>(border.rooms[1 - end])].name);
+      }
+    }
     table.add({printable(room.name), number(room.floorArea_m2, 2), number(room.volume_m3, 2),
-               number(room.floor_m, 2), std::to_string(room.domain)});
+               number(room.floor_m, 2), number(room.ceiling_m, 2), std::to_string(windows.panes),
+               number(windows.area_m2, 2), opensTo});
   }
   return table.text();
 }
 
 std::string airText(const Building& building) {
   Table table({"air", "surface m2", "what it is"});
+  std::size_t dark = 0;
+  double dark_m2 = 0.0;
   for (std::size_t i = 0; i < building.domains.size(); ++i) {
     const Domain& domain = building.domains[i];
-    table.add({std::to_string(i), number(domain.area_m2, 2),
-               domain.open ? "open to the sky" : (domain.lit ? "closed, lit" : "closed, dark")});
+    if (!domain.lit) {
+      ++dark;
+      dark_m2 += domain.area_m2;
+      continue;
+    }
+    table.add(
+        {std::to_string(i), number(domain.area_m2, 2), domain.open ? "open to the sky" : "closed, lit"});
   }
+  // Hollows of walls and furniture come by the hundred.
+  if (dark > 0) table.add({"others", number(dark_m2, 2), std::to_string(dark) + " closed and dark"});
   return table.text();
 }
 
@@ -227,12 +281,27 @@ std::string inspectionText(const Study& study, const Building& building, const T
   return text;
 }
 
-void runInspect(const InputArguments& arguments, bool json) {
+/// Writes the plan of each storey as plan-1.svg and so on, the lowest first.
+void writePlans(const std::filesystem::path& folder, const Building& building) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw InputError("the folder " + folder.string() + " cannot be made: " + failed.message());
+  int number = 0;
+  for (const StoreyPlan& plan : storeyPlans(building)) {
+    const std::filesystem::path file = folder / ("plan-" + std::to_string(++number) + ".svg");
+    std::ofstream stream(file, std::ios::binary);
+    stream << plan.svg << std::flush;
+    if (!stream) throw MachineError(file.string() + " cannot be written");
+  }
+}
+
+void runInspect(const InputArguments& arguments, bool json, const std::filesystem::path& plans) {
   Study study = readInput(arguments);
   study.grids.clear();  // a grid that finds no room would end the inspection that is to tell why
   std::vector<Diagnosis> diagnoses;
   const Building building = readBuilding(study, diagnoses, [](const std::string&) {});
   const Totals totals = totalsOf(building);
+  if (!plans.empty()) writePlans(plans, building);
   if (json) {
     // Names come from outside and may be no UTF-8.
     printResult(
@@ -249,12 +318,17 @@ void addInspectCommand(CLI::App& program, std::function<void()>& run) {
   struct Arguments {
     InputArguments input;
     bool json = false;
+    std::filesystem::path plans;
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
       *program.add_subcommand("inspect", "Tell what is in a model, what was repaired and what could not be.");
   addInputArguments(command, arguments->input);
   command.add_flag("--json", arguments->json, "print it as JSON");
+  command
+      .add_option("-o,--output", arguments->plans,
+                  "a folder for a plan of each storey (SVG): rooms, windows, openings")
+      ->option_text("DIR");
   command.footer(
       "Prints counts before and after the clean-up, materials with reflectance and area, the bodies of air,\n"
       "windows and rooms, and every warning that a study would give. It solves nothing.\n\n"
@@ -262,8 +336,9 @@ void addInspectCommand(CLI::App& program, std::function<void()>& run) {
       "  clerestory inspect office.glb\n"
       "  clerestory inspect plan.obj --units mm --up y\n"
       "  clerestory inspect study.toml        the same with the study's materials");
-  command.callback(
-      [arguments, &run] { run = [arguments] { runInspect(arguments->input, arguments->json); }; });
+  command.callback([arguments, &run] {
+    run = [arguments] { runInspect(arguments->input, arguments->json, arguments->plans); };
+  });
 }
 
 }  // namespace clerestory

@@ -19,8 +19,10 @@ Building makeBuilding(CleanModel model, const Study& study) {
   cutAtPanes(building.model.pieces, building.model.materials);
   placeLuminaires(building, study);
   findDomains(building);
-  const RayScene rays(building.model, building.innerGlass);
-  findRooms(building, rays);
+  RayScene rays(building.model, building.innerGlass);
+  const std::vector<RoomAir> airs = airOfRooms(building, rays);
+  if (cutAtDoorways(building, airs)) rays = RayScene(building.model, building.innerGlass);
+  findRooms(building, rays, airs);
   checkLuminaires(building);
   layGrids(building, study, rays);
   return building;

@@ -15,6 +15,7 @@ namespace {
 constexpr double offPlane_m = 0.001;   // a part thinner than this stays with its other half
 constexpr double frameReach_m = 0.15;  // between a pane and its reveal stands a frame of up to this width
 constexpr double wallReach_m = 0.005;  // a wall that ends a little above the floor
+constexpr double doorReach_m = 0.02;   // a door's frame stands in its cut
 constexpr double overlapMin_m = 0.005;
 
 /// A polygon that others are cut at, in its plane.
@@ -190,6 +191,34 @@ std::vector<std::uint32_t> cutWhereMet(Pieces& pieces, const std::vector<bool>& 
       if (other != piece && !apart && !isParallel) cutters.push_back(&all[other]);
     }
     return cutters;
+  });
+}
+
+std::vector<std::uint32_t> cutUpright(Pieces& pieces, const std::vector<Material>& materials,
+                                      const std::vector<std::int32_t>& sideDomain,
+                                      const std::vector<UprightCut>& cuts) {
+  std::vector<Cutter> cutters;
+  for (const UprightCut& cut : cuts) {
+    const glm::dvec3 up(0.0, 0.0, cut.height_m);
+    Cutter cutter{{cut.from_m, cut.to_m, cut.to_m + up, cut.from_m + up},
+                  glm::normalize(glm::cross(cut.to_m - cut.from_m, up)),
+                  glm::dvec3(1e300),
+                  glm::dvec3(-1e300),
+                  doorReach_m};
+    for (const glm::dvec3& corner : cutter.corners) {
+      cutter.low = glm::min(cutter.low, corner - doorReach_m);
+      cutter.high = glm::max(cutter.high, corner + doorReach_m);
+    }
+    cutters.push_back(std::move(cutter));
+  }
+  return cutPieces(pieces, [&](std::uint32_t piece) {
+    std::vector<const Cutter*> chosen;
+    if (materials[pieces.material[piece]].glazing) return chosen;
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+      if (sideDomain[2 * piece] == cuts[i].domain || sideDomain[2 * piece + 1] == cuts[i].domain)
+        chosen.push_back(&cutters[i]);
+    }
+    return chosen;
   });
 }
 

@@ -14,4 +14,17 @@ void cutAtPanes(Pieces& pieces, const std::vector<Material>& materials);
 /// planes of all pieces that meet them. Returns the piece that each of the new ones is a part of.
 std::vector<std::uint32_t> cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs);
 
+/// An upright rectangle over the line between two points.
+struct UprightCut {
+  glm::dvec3 from_m, to_m;
+  double height_m;
+  std::int32_t domain;  ///< whose pieces it cuts
+};
+
+/// Splits opaque pieces of the cuts' domains (`sideDomain`: 2 × pieces) that pass through these rectangles.
+/// Returns the piece that each of the new ones is a part of.
+std::vector<std::uint32_t> cutUpright(Pieces& pieces, const std::vector<Material>& materials,
+                                      const std::vector<std::int32_t>& sideDomain,
+                                      const std::vector<UprightCut>& cuts);
+
 }  // namespace clerestory

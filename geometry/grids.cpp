@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <geometry/sampling.hpp>
 
@@ -44,15 +45,33 @@ double distanceToOutline(const glm::dvec2& point, const std::vector<glm::dvec2>&
   return least;
 }
 
-std::vector<std::vector<glm::dvec2>> floorOutlines(const Building& building, const Room& room) {
-  std::vector<std::vector<glm::dvec2>> outlines;
+/// A piece of a room's floor in plan.
+struct FloorPart {
+  std::vector<glm::dvec2> outline;
+  double height_m;  ///< of its middle
+};
+
+std::vector<FloorPart> floorPartsOf(const Building& building, const Room& room) {
+  std::vector<FloorPart> parts;
   for (const std::uint32_t piece : room.floorPieces) {
-    std::vector<glm::dvec2>& outline = outlines.emplace_back();
-    for (const std::uint32_t corner : building.model.pieces.polygons[piece]) {
-      outline.emplace_back(building.model.pieces.points[corner]);
+    FloorPart& part = parts.emplace_back();
+    const auto corners = building.model.pieces.polygons[piece];
+    for (const std::uint32_t corner : corners) {
+      const glm::dvec3& point = building.model.pieces.points[corner];
+      part.outline.emplace_back(point);
+      part.height_m += point.z / static_cast<double>(corners.size());
     }
   }
-  return outlines;
+  return parts;
+}
+
+/// Height of the floor at a place in plan, the highest where several lie there; none beside it.
+std::optional<double> floorAt(const std::vector<FloorPart>& parts, const glm::dvec2& plan) {
+  std::optional<double> height_m;
+  for (const FloorPart& part : parts) {
+    if (height_m.value_or(-1e300) < part.height_m && isWithin(plan, part.outline)) height_m = part.height_m;
+  }
+  return height_m;
 }
 
 /// The centred points of a rectangle: n = floor(length / spacing) of them each way.
@@ -75,11 +94,7 @@ std::int32_t roomBelow(const Building& building, const glm::dvec2& point, double
     const Room& room = building.rooms[i];
     if (room.floor_m > below_m) continue;
     if (found >= 0 && room.floor_m <= building.rooms[static_cast<std::size_t>(found)].floor_m) continue;
-    const auto outlines = floorOutlines(building, room);
-    if (std::any_of(outlines.begin(), outlines.end(),
-                    [&](const auto& outline) { return isWithin(point, outline); })) {
-      found = static_cast<std::int32_t>(i);
-    }
+    if (floorAt(floorPartsOf(building, room), point)) found = static_cast<std::int32_t>(i);
   }
   return found;
 }
@@ -88,19 +103,19 @@ SensorGrid gridOverRoom(const Building& building, const GridSettings& settings, 
                         const RayScene& rays) {
   const Room& room = building.rooms[static_cast<std::size_t>(roomIndex)];
   SensorGrid grid{settings.name, roomIndex, {}, {}, settings.spacing_m};
-  const auto outlines = floorOutlines(building, room);
+  const std::vector<FloorPart> floor = floorPartsOf(building, room);
   Rectangle bounds;
-  for (const auto& outline : outlines) {
-    for (const glm::dvec2& corner : outline) bounds.add(corner);
+  for (const FloorPart& part : floor) {
+    for (const glm::dvec2& corner : part.outline) bounds.add(corner);
   }
   bounds.low += settings.inset_m;
   bounds.high -= settings.inset_m;
   if (bounds.low.x >= bounds.high.x || bounds.low.y >= bounds.high.y) return grid;
   for (const glm::dvec2& plan : pointsOf(bounds, settings.spacing_m)) {
-    const bool overFloor = std::any_of(outlines.begin(), outlines.end(),
-                                       [&](const auto& outline) { return isWithin(plan, outline); });
-    const glm::dvec3 point(plan, room.floor_m + settings.height_m);
-    if (overFloor && isInAir(building, rays, point, room.domain)) grid.points.push_back(point);
+    const std::optional<double> floor_m = floorAt(floor, plan);
+    if (!floor_m) continue;
+    const glm::dvec3 point(plan, *floor_m + settings.height_m);
+    if (isInAir(building, rays, point, room.domain)) grid.points.push_back(point);
   }
   grid.normals.assign(grid.points.size(), {0, 0, 1});
   return grid;

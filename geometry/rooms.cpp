@@ -1,28 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rooms: closed air with a floor to stand on, measured by the divergence theorem.
+// Rooms from regions of air: the raster says which pieces belong to one, the pieces themselves give its floor
+// area exactly.
 #include "rooms.hpp"
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
-#include <set>
-#include <span>
 
 #include <geometry/sampling.hpp>
 
 namespace clerestory {
 namespace {
 
-constexpr double floorAreaMin_m2 = 1.5;
-constexpr float heightMin_m = 1.6F;
-constexpr double meanChordMin_m =
-    0.6;  // 4 V / S: a cavity in a wall has twice its thickness, an office 2.6 m
-constexpr double levelTolerance_m = 0.002;
-constexpr std::array coverHeights_m{0.05, 0.5, 1.2, 1.8,
-                                    2.3};  // where the air over covered floor is looked for
-constexpr double upward = 0.95;            // cosine of the steepest floor
+constexpr double floorAreaLeast_m2 = 1.0;
+constexpr double headroom_m = 1.6;
+constexpr double levelTolerance_m = 0.002;  // faces of one floor
+constexpr double floorReach_m = 0.6;        // from a storey's floor to that of one of its rooms
+constexpr double platformLeast_m = 0.35;    // from somewhere on a floor of another level to the walls
+constexpr double upward = 0.95;             // cosine of the steepest floor
+constexpr double enclosedShare = 0.95;      // of rays from covered air outside, for it to be a room
+
+std::size_t at(std::int32_t index) {
+  return static_cast<std::size_t>(index);
+}
 
 glm::dvec3 centreOf(const Pieces& pieces, std::uint32_t piece) {
   glm::dvec3 sum(0.0);
@@ -30,202 +33,343 @@ glm::dvec3 centreOf(const Pieces& pieces, std::uint32_t piece) {
   return sum / static_cast<double>(pieces.polygons[piece].size());
 }
 
-/// The sides of one domain that look up, as pieces with the height of their centre.
-struct Tread {
+/// A piece that may be a part of a floor, over the region that most of it lies under.
+struct Tile {
   std::uint32_t piece;
   double height_m;
+  double stoodOn_m2;                 ///< where a person can stand on it
+  std::vector<std::uint32_t> cells;  ///< some that it lies under
 };
 
-/// Share of a piece over which a person can stand: none in the hollow of a slab, a roof or a rug.
-double headroomShare(const Pieces& pieces, const RayScene& rays, std::uint32_t piece) {
-  constexpr std::uint32_t count = 32;
-  std::vector<glm::vec3> polygon;
-  for (const std::uint32_t corner : pieces.polygons[piece])
-    polygon.emplace_back(pieces.points[corner] - rays.origin());
-  const Sequence sequence(mixKeys(0x4ead, piece));
-  std::uint32_t high = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const glm::vec3 from = pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1));
-    const auto hit =
-        rays.nearest(from + glm::vec3(0, 0, rayOffset_m), {0, 0, 1}, RayScene::Barrier::opaqueAndGlass);
-    if (hit.distance_m >= heightMin_m) ++high;
+/// Tiles by region of a storey.
+std::vector<std::vector<Tile>> tilesOf(const Building& building, const RoomAir& air, const Storey& storey) {
+  constexpr std::uint32_t count = 24;
+  const Pieces& pieces = building.model.pieces;
+  std::vector<std::vector<Tile>> tiles(at(storey.parted.count));
+  for (std::uint32_t piece = 0; piece < pieces.size(); ++piece) {
+    if (std::abs(pieces.normal[piece].z) < upward) continue;
+    Tile tile{piece, centreOf(pieces, piece).z, 0.0, {}};
+    if (std::abs(tile.height_m - storey.floor_m) > floorReach_m) continue;
+    std::vector<glm::dvec3> polygon;
+    for (const std::uint32_t corner : pieces.polygons[piece]) polygon.push_back(pieces.points[corner]);
+    const Sequence sequence(0x711e);
+    std::map<std::int32_t, std::uint32_t> votes;
+    std::uint32_t stoodOn = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const glm::dvec3 point = pointOnPolygon<glm::dvec3>(polygon, sequence(i, 0), sequence(i, 1));
+      const std::uint32_t cell = air.map.cellAt(glm::dvec2(point));
+      ++votes[cell == AirMap::none ? -1 : storey.parted.region[cell]];
+      if (cell == AirMap::none) continue;
+      tile.cells.push_back(cell);
+      stoodOn += std::ranges::any_of(air.map.spans(cell), [&](const AirSpan& span) {
+        return std::abs(span.low_m - point.z) < levelTolerance_m && span.high_m - span.low_m >= headroom_m;
+      });
+    }
+    const auto most = std::max_element(votes.begin(), votes.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most->first < 0) continue;
+    const std::uint32_t upper = 2 * piece + (pieces.normal[piece].z > 0.0 ? 0 : 1);
+    if (building.sideDomain[upper] == air.domain)  // else under a foot, a rug
+      tile.stoodOn_m2 = pieces.area_m2[piece] * stoodOn / count;
+    tiles[at(most->first)].push_back(std::move(tile));
   }
-  return static_cast<double>(high) / count;
+  return tiles;
 }
 
-/// Treads of about one height.
+/// Tiles of about one height, without the surfaces that are hardly stood on: the hollow of a rug, the bottom
+/// of a bookcase.
 struct Level {
-  std::span<const Tread> treads;
-  double area_m2 = 0.0;
+  double height_m = 0.0, area_m2 = 0.0, stoodOn_m2 = 0.0;
+  std::vector<const Tile*> floor;
 };
 
-/// Levels by falling area, the lower of equals first.
-std::vector<Level> levelsOf(const Pieces& pieces, std::span<const Tread> byHeight) {
+Level levelOf(const Pieces& pieces, std::span<const Tile> tiles) {
+  std::map<std::uint32_t, std::array<double, 2>> areaAndStoodOn_m2;  // by surface
+  for (const Tile& tile : tiles) {
+    areaAndStoodOn_m2[pieces.surface[tile.piece]][0] += pieces.area_m2[tile.piece];
+    areaAndStoodOn_m2[pieces.surface[tile.piece]][1] += tile.stoodOn_m2;
+  }
+  Level level{.height_m = tiles.front().height_m, .floor = {}};
+  for (const Tile& tile : tiles) {
+    const auto& [area_m2, stoodOn_m2] = areaAndStoodOn_m2[pieces.surface[tile.piece]];
+    if (5.0 * stoodOn_m2 < area_m2) continue;
+    level.floor.push_back(&tile);
+    level.area_m2 += pieces.area_m2[tile.piece];
+    level.stoodOn_m2 += tile.stoodOn_m2;
+  }
+  return level;
+}
+
+/// Adds the tiles of another level that no floor lies under: a platform and tiles of another thickness are
+/// floor too, a bed, a rug, a window's sill and the hollow of a wall are not.
+void addLevel(const Pieces& pieces, const RoomAir& air, const Storey& storey, const Level& other,
+              Level& floor) {
+  Level beside{.floor = {}};
+  for (const Tile* tile : other.floor) {
+    const auto over = std::ranges::count_if(tile->cells, [&](std::uint32_t cell) {
+      return std::ranges::any_of(air.map.treads(cell), [&](const Tread& tread) {
+        return std::abs(tread.height_m - floor.height_m) <= levelTolerance_m &&
+               tread.height_m < other.height_m;
+      });
+    });
+    const bool isNarrow = std::ranges::none_of(
+        tile->cells, [&](std::uint32_t cell) { return storey.parted.toWall_m[cell] >= platformLeast_m; });
+    if (isNarrow || 2 * static_cast<std::size_t>(over) > tile->cells.size()) continue;
+    beside.floor.push_back(tile);
+    beside.area_m2 += pieces.area_m2[tile->piece];
+  }
+  if (beside.area_m2 < floorAreaLeast_m2) return;
+  floor.floor.insert(floor.floor.end(), beside.floor.begin(), beside.floor.end());
+  floor.area_m2 += beside.area_m2;
+}
+
+/// Of a region's levels the one that most can be stood on, the lower of equals, and what lies beside it.
+/// `tiles` by height.
+Level floorOf(const Pieces& pieces, const RoomAir& air, const Storey& storey, std::span<const Tile> tiles) {
   std::vector<Level> levels;
-  for (std::size_t first = 0; first < byHeight.size();) {
-    Level level;
-    std::size_t last = first;
-    for (; last < byHeight.size() && byHeight[last].height_m - byHeight[first].height_m <= levelTolerance_m;
-         ++last) {
-      level.area_m2 += pieces.area_m2[byHeight[last].piece];
-    }
-    level.treads = byHeight.subspan(first, last - first);
-    levels.push_back(level);
-    first = last;
+  for (std::size_t first = 0; first < tiles.size();) {
+    std::size_t end = first;
+    while (end < tiles.size() && tiles[end].height_m - tiles[first].height_m <= levelTolerance_m) ++end;
+    levels.push_back(levelOf(pieces, tiles.subspan(first, end - first)));
+    first = end;
   }
   std::stable_sort(levels.begin(), levels.end(),
-                   [](const Level& a, const Level& b) { return a.area_m2 > b.area_m2; });
-  return levels;
+                   [](const Level& a, const Level& b) { return a.stoodOn_m2 > b.stoodOn_m2; });
+  Level floor = levels.empty() ? Level{.floor = {}} : levels.front();
+  for (std::size_t i = 1; i < levels.size(); ++i) addLevel(pieces, air, storey, levels[i], floor);
+  return floor;
 }
 
-/// The level of the largest area among the lower half of what can be stood on.
-/// A level counts by the area with headroom, which is a quarter of a room's floor at least; the rest may
-/// stand under tables and shelves.
-void chooseFloor(const Pieces& pieces, const RayScene& rays, std::vector<Tread> treads, double low_m,
-                 double high_m, Room& room) {
-  std::erase_if(treads, [&](const Tread& tread) { return tread.height_m > 0.5 * (low_m + high_m); });
-  std::stable_sort(treads.begin(), treads.end(),
-                   [](const Tread& a, const Tread& b) { return a.height_m < b.height_m; });
-  double mostHigh_m2 = 0.0;
-  for (const Level& level : levelsOf(pieces, treads)) {
-    if (level.area_m2 <= mostHigh_m2) break;  // neither this one nor those after it can have more
-    std::map<std::uint32_t, double> areaOfSurface_m2;
-    std::map<std::uint32_t, double> highOfSurface_m2;
-    std::vector<std::uint32_t> floor;
-    for (const auto& [piece, height_m] : level.treads) {
-      areaOfSurface_m2[pieces.surface[piece]] += pieces.area_m2[piece];
-      highOfSurface_m2[pieces.surface[piece]] += headroomShare(pieces, rays, piece) * pieces.area_m2[piece];
-      floor.push_back(piece);
-    }
-    // A surface that is hardly stood on is no floor: the hollow of a rug, the bottom of a bookcase.
-    std::erase_if(floor, [&](std::uint32_t piece) {
-      return 5.0 * highOfSurface_m2[pieces.surface[piece]] < areaOfSurface_m2[pieces.surface[piece]];
-    });
-    double area_m2 = 0.0;
-    double high_m2 = 0.0;
-    for (const std::uint32_t piece : floor) area_m2 += pieces.area_m2[piece];
-    for (const auto& [surface, high] : highOfSurface_m2) high_m2 += high;
-    const double height_m = level.treads.front().height_m;
-    const bool isMore = high_m2 > mostHigh_m2 || (high_m2 == mostHigh_m2 && height_m < room.floor_m);
-    if (high_m2 > 0.0 && isMore && 4.0 * high_m2 >= area_m2) {
-      mostHigh_m2 = high_m2;
-      room.floorArea_m2 = area_m2;
-      room.floor_m = height_m;
-      room.floorPieces = std::move(floor);
-    }
-  }
-}
-
-/// Adds the parts of a floor that are covered by rugs and furniture: same surface, same level, the room above
-/// them.
-void addCoveredFloor(const Building& building, const RayScene& rays, Room& room) {
-  const Pieces& pieces = building.model.pieces;
-  std::set<std::uint32_t> own(room.floorPieces.begin(), room.floorPieces.end());
-  std::set<std::uint32_t> surfaces;
-  for (const std::uint32_t piece : own) surfaces.insert(pieces.surface[piece]);
-  for (std::uint32_t piece = 0; piece < pieces.size(); ++piece) {
-    if (own.contains(piece) || !surfaces.contains(pieces.surface[piece])) continue;
-    glm::dvec3 place = centreOf(pieces, piece);
-    if (std::abs(pieces.normal[piece].z) < upward || std::abs(place.z - room.floor_m) > levelTolerance_m)
-      continue;
-    const bool isUnderRoom = std::any_of(coverHeights_m.begin(), coverHeights_m.end(), [&](double height_m) {
-      return isInAir(building, rays, place + glm::dvec3(0.0, 0.0, height_m), room.domain);
-    });
-    if (!isUnderRoom) continue;
-    room.floorPieces.push_back(piece);
-    room.floorArea_m2 += pieces.area_m2[piece];
-  }
-}
-
-/// Everything that is measured of a domain in one pass over its sides.
-struct Measures {
-  double volume_m3 = 0.0;
-  double low_m = 1e300, high_m = -1e300;
-  std::vector<Tread> treads;
+/// Air of a region by its cells: volume and the height of most of its ceiling.
+struct AirMeasure {
+  double volume_m3 = 0.0, plan_m2 = 0.0, ceiling_m = 0.0;
 };
 
-std::map<std::int32_t, Measures> measureDomains(const Building& building) {
-  const Pieces& pieces = building.model.pieces;
-  std::map<std::int32_t, Measures> measures;
-  for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
-    const std::uint32_t piece = side / 2;
-    if (building.sideDomain[side] < 0 || building.innerGlass[piece])
-      continue;  // has the same air on both sides
-    Measures& own = measures[building.sideDomain[side]];
-    const glm::dvec3 normal = side % 2 == 0 ? pieces.normal[piece] : -pieces.normal[piece];
-    const glm::dvec3 centre = centreOf(pieces, piece);
-    own.volume_m3 -= pieces.area_m2[piece] * glm::dot(centre, normal) / 3.0;
-    for (const std::uint32_t corner : pieces.polygons[piece]) {
-      own.low_m = std::min(own.low_m, pieces.points[corner].z);
-      own.high_m = std::max(own.high_m, pieces.points[corner].z);
+AirMeasure measureAir(const RoomAir& air, const Storey& storey, std::int32_t region) {
+  const double cell_m2 = air.map.cell_m() * air.map.cell_m();
+  AirMeasure measure;
+  std::map<long, std::pair<std::size_t, double>> ceilings;  // cells and height, by centimetre
+  for (std::uint32_t cell = 0; cell < air.map.size(); ++cell) {
+    if (storey.parted.region[cell] != region) continue;
+    double top_m = -1e300;
+    for (const AirSpan& span : air.map.spans(cell)) {
+      const double low_m = std::max(span.low_m, storey.floor_m - floorReach_m);
+      const double high_m = std::min(span.high_m, storey.end_m);
+      if (high_m <= low_m) continue;
+      measure.volume_m3 += cell_m2 * (high_m - low_m);
+      top_m = std::max(top_m, high_m);
     }
-    if (normal.z > upward) own.treads.push_back({piece, centre.z});
+    measure.plan_m2 += cell_m2;
+    auto& [cells, height_m] = ceilings[std::lround(100.0 * top_m)];
+    height_m = top_m;
+    ++cells;
   }
-  return measures;
+  std::size_t most = 0;
+  for (const auto& [centimetre, ceiling] : ceilings) {
+    if (ceiling.first <= most) continue;
+    most = ceiling.first;
+    measure.ceiling_m = ceiling.second;
+  }
+  return measure;
 }
 
-/// Treads of the outside that have a roof: most rays upward from them meet something.
-void keepCovered(const Pieces& pieces, const RayScene& rays, std::vector<Tread>& treads) {
-  std::erase_if(treads, [&](const Tread& tread) {
-    constexpr std::uint32_t count = 32;
-    std::vector<glm::vec3> polygon;
-    for (const std::uint32_t corner : pieces.polygons[tread.piece]) {
-      polygon.emplace_back(pieces.points[corner] - rays.origin());
-    }
-    const Sequence sequence(mixKeys(0xf1, tread.piece));
-    std::uint32_t met = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const glm::vec3 from = pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1));
-      const glm::vec3 direction = cosineDirection({0, 0, 1}, sequence(i, 2), sequence(i, 3));
-      if (rays.nearest(from + glm::vec3(0, 0, rayOffset_m), direction, RayScene::Barrier::opaqueAndGlass))
+/// Volume of each domain by the divergence theorem: exact where all its sides are known.
+std::map<std::int32_t, double> enclosedVolumes(const Building& building) {
+  const Pieces& pieces = building.model.pieces;
+  std::map<std::int32_t, double> volumes_m3;
+  for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
+    const std::uint32_t piece = side / 2;
+    if (building.sideDomain[side] < 0 || building.innerGlass[piece]) continue;  // the same air on both sides
+    const double sign = side % 2 == 0 ? 1.0 : -1.0;
+    volumes_m3[building.sideDomain[side]] -=
+        sign * pieces.area_m2[piece] * glm::dot(centreOf(pieces, piece), pieces.normal[piece]) / 3.0;
+  }
+  return volumes_m3;
+}
+
+/// Share of level rays from the middle heights of a region that meet something within reach.
+double enclosure(const RayScene& rays, const RoomAir& air, const Storey& storey, std::int32_t region) {
+  constexpr std::uint32_t every = 97;  // cells
+  constexpr float reach_m = 30.0F;
+  const Sequence sequence(0xec);
+  std::uint32_t cast = 0;
+  std::uint32_t met = 0;
+  std::uint32_t seen = 0;
+  for (std::uint32_t cell = 0; cell < air.map.size(); ++cell) {
+    if (storey.parted.region[cell] != region || ++seen % every != 0) continue;
+    for (const AirSpan& span : air.map.spans(cell)) {
+      if (span.high_m - span.low_m < headroom_m) continue;
+      const glm::dvec3 place(air.map.middleOf(cell), 0.5 * (span.low_m + span.high_m));
+      const float angle = 6.2831853F * sequence(cast, 0);
+      ++cast;
+      const glm::vec3 direction(std::cos(angle), std::sin(angle), 0.0F);
+      if (rays.nearest(glm::vec3(place - rays.origin()), direction, RayScene::Barrier::opaqueAndGlass,
+                       reach_m))
         ++met;
     }
-    return met < count / 2;
-  });
+  }
+  return cast == 0 ? 0.0 : static_cast<double>(met) / cast;
+}
+
+/// A room with the region that it was made of.
+struct Draft {
+  Room room;
+  const RoomAir* air;
+  std::size_t storey;
+  std::int32_t region;
+};
+
+std::vector<Draft> draftsOf(const Building& building, const RoomAir& air) {
+  const Pieces& pieces = building.model.pieces;
+  std::vector<Draft> drafts;
+  for (std::size_t s = 0; s < air.storeys.size(); ++s) {
+    const Storey& storey = air.storeys[s];
+    std::vector<std::vector<Tile>> tiles = tilesOf(building, air, storey);
+    for (std::int32_t region = 0; region < storey.parted.count; ++region) {
+      std::vector<Tile>& own = tiles[at(region)];
+      std::stable_sort(own.begin(), own.end(),
+                       [](const Tile& a, const Tile& b) { return a.height_m < b.height_m; });
+      const Level floor = floorOf(pieces, air, storey, own);
+      if (floor.area_m2 < floorAreaLeast_m2) continue;
+      const AirMeasure measure = measureAir(air, storey, region);
+      Room room;
+      room.domain = air.domain;
+      room.floorArea_m2 = floor.area_m2;
+      room.floor_m = floor.height_m;
+      for (const Tile* tile : floor.floor) room.floorPieces.push_back(tile->piece);
+      room.ceiling_m = measure.ceiling_m;
+      // Cells at the walls are half in air: the floor's own area mends what they add or leave out.
+      const double mend = floor.area_m2 / measure.plan_m2;
+      room.volume_m3 = measure.volume_m3 * (std::abs(mend - 1.0) < 0.1 ? mend : 1.0);
+      drafts.push_back({std::move(room), &air, s, region});
+    }
+  }
+  return drafts;
+}
+
+/// Answers which room a place belongs to.
+class RoomPlaces {
+ public:
+  RoomPlaces(const Building& building, const std::vector<Draft>& drafts) : building_(building) {
+    for (std::size_t i = 0; i < drafts.size(); ++i) {
+      const Draft& draft = drafts[i];
+      Domain& own = domains_[draft.room.domain];
+      own.air = draft.air;
+      own.rooms[{draft.storey, draft.region}] = static_cast<std::int32_t>(i);
+      if (own.first < 0) own.first = static_cast<std::int32_t>(i);
+    }
+  }
+
+  [[nodiscard]] std::int32_t roomOf(std::uint32_t side) const {
+    const auto found = domains_.find(building_.sideDomain[side]);
+    if (found == domains_.end()) return -1;
+    const Domain& own = found->second;
+    const bool isOpen = building_.domains[at(building_.sideDomain[side])].open;
+    if (own.rooms.size() == 1 && !isOpen) return own.first;
+    const Pieces& pieces = building_.model.pieces;
+    constexpr double off_m = 0.06;
+    const glm::dvec3 place =
+        centreOf(pieces, side / 2) + (side % 2 == 0 ? off_m : -off_m) * pieces.normal[side / 2];
+    const std::uint32_t cell = own.air->map.cellAt(glm::dvec2(place));
+    if (isOpen && (cell == AirMap::none || own.air->map.spans(cell).empty())) return -1;
+    return roomAt(own, cell, place.z);
+  }
+
+ private:
+  struct Domain {
+    const RoomAir* air = nullptr;
+    std::map<std::pair<std::size_t, std::int32_t>, std::int32_t> rooms;  ///< by storey and region
+    std::int32_t first = -1;
+  };
+
+  /// That of the storey at the height; of one below where there the air has no floor of its own.
+  static std::int32_t roomAt(const Domain& own, std::uint32_t cell, double height_m) {
+    if (cell == AirMap::none) return own.first;
+    std::size_t storey = 0;
+    while (storey + 1 < own.air->storeys.size() && height_m > own.air->storeys[storey + 1].floor_m - 0.3)
+      ++storey;
+    for (std::size_t below = storey + 1; below-- > 0;) {
+      const auto room = own.rooms.find({below, own.air->storeys[below].nearest[cell]});
+      if (room != own.rooms.end()) return room->second;
+    }
+    return own.first;
+  }
+
+  const Building& building_;
+  std::map<std::int32_t, Domain> domains_;
+};
+
+void addBorders(Building& building, const std::vector<Draft>& drafts, const std::vector<RoomAir>& airs) {
+  std::map<std::tuple<const RoomAir*, std::size_t, std::int32_t>, std::int32_t> roomOf;
+  for (std::size_t i = 0; i < drafts.size(); ++i)
+    roomOf[{drafts[i].air, drafts[i].storey, drafts[i].region}] = static_cast<std::int32_t>(i);
+  for (const RoomAir& air : airs) {
+    for (std::size_t s = 0; s < air.storeys.size(); ++s) {
+      for (const Doorway& doorway : air.doorways[s]) {
+        const auto a = roomOf.find({&air, s, doorway.regions[0]});
+        const auto b = roomOf.find({&air, s, doorway.regions[1]});
+        if (a == roomOf.end() || b == roomOf.end()) continue;
+        const auto [low, high] = std::minmax(a->second, b->second);
+        building.borders.push_back({{low, high}, doorway.from_m, doorway.to_m, doorway.height_m});
+      }
+    }
+  }
 }
 
 }  // namespace
 
-void findRooms(Building& building, const RayScene& rays) {
+void findRooms(Building& building, const RayScene& rays, const std::vector<RoomAir>& airs) {
   const Pieces& pieces = building.model.pieces;
-  std::map<std::int32_t, Measures> measures = measureDomains(building);
-  for (auto& [domain, measured] : measures) {
-    const Domain& air = building.domains[static_cast<std::size_t>(domain)];
-    if (air.open || 4.0 * measured.volume_m3 < meanChordMin_m * air.area_m2) continue;
-    Room room;
-    room.domain = domain;
-    room.volume_m3 = measured.volume_m3;
-    chooseFloor(pieces, rays, measured.treads, measured.low_m, measured.high_m, room);
-    if (room.floorArea_m2 < floorAreaMin_m2) continue;
-    addCoveredFloor(building, rays, room);
-    building.rooms.push_back(std::move(room));
+  std::vector<Draft> drafts;
+  std::vector<Draft> covered;  // outdoors
+  for (const RoomAir& air : airs) {
+    std::vector<Draft> own = draftsOf(building, air);
+    std::vector<Draft>& list = building.domains[at(air.domain)].open ? covered : drafts;
+    std::move(own.begin(), own.end(), std::back_inserter(list));
+  }
+  const bool noneIsClosed = drafts.empty();
+  for (Draft& draft : covered) {
+    const Storey& storey = draft.air->storeys[draft.storey];
+    if (!noneIsClosed && enclosure(rays, *draft.air, storey, draft.region) < enclosedShare) continue;
+    drafts.push_back(std::move(draft));
   }
 
-  if (building.rooms.empty() && !building.domains.empty() && building.domains[0].open) {
-    Measures& outside = measures[0];
-    keepCovered(pieces, rays, outside.treads);
-    Room room;
-    room.domain = 0;
-    chooseFloor(pieces, rays, outside.treads, outside.low_m, outside.high_m, room);
-    if (room.floorArea_m2 >= floorAreaMin_m2) {
-      addDiagnosis(building.diagnoses,
-                   {"G251",
-                    "no part of the model is closed air: its covered floor is taken as one room, lit through "
-                    "every gap; close the envelope (walls, floor, ceiling, panes) for exact rooms",
-                    ""});
-      building.rooms.push_back(std::move(room));
-    }
+  const std::map<std::int32_t, double> volumes_m3 = enclosedVolumes(building);
+  std::map<std::int32_t, std::size_t> roomsOf;
+  for (const Draft& draft : drafts) ++roomsOf[draft.room.domain];
+  for (Draft& draft : drafts) {
+    const auto exact = volumes_m3.find(draft.room.domain);
+    const bool isWhole = roomsOf[draft.room.domain] == 1 && exact != volumes_m3.end();
+    if (isWhole && std::abs(exact->second - draft.room.volume_m3) < 0.05 * draft.room.volume_m3)
+      draft.room.volume_m3 = exact->second;
   }
 
-  // From south to north, west to east, bottom to top: names that do not depend on the file's order.
-  const auto place = [&](const Room& room) {
-    const glm::dvec3 centre = centreOf(pieces, room.floorPieces.front());
-    return std::array{std::round(10.0 * room.floor_m), std::round(10.0 * centre.y), centre.x};
+  // From bottom to top, south to north, west to east: names that do not depend on the file's order.
+  const auto place = [&](const Draft& draft) {
+    const glm::dvec3 centre = centreOf(pieces, draft.room.floorPieces.front());
+    return std::array{std::round(10.0 * draft.room.floor_m), std::round(10.0 * centre.y), centre.x};
   };
-  std::stable_sort(building.rooms.begin(), building.rooms.end(),
-                   [&](const Room& a, const Room& b) { return place(a) < place(b); });
-  for (std::size_t i = 0; i < building.rooms.size(); ++i) {
-    building.rooms[i].name = "Room " + std::to_string(i + 1);
+  std::stable_sort(drafts.begin(), drafts.end(),
+                   [&](const Draft& a, const Draft& b) { return place(a) < place(b); });
+  for (std::size_t i = 0; i < drafts.size(); ++i) {
+    drafts[i].room.name = "Room " + std::to_string(i + 1);
+    building.rooms.push_back(drafts[i].room);
+  }
+
+  const RoomPlaces places(building, drafts);
+  building.sideRoom.resize(building.sideDomain.size());
+  for (std::uint32_t side = 0; side < building.sideRoom.size(); ++side)
+    building.sideRoom[side] = places.roomOf(side);
+  for (Portal& portal : building.portals)
+    portal.room = building.sideRoom[2 * portal.piece + (portal.frontIsInside ? 0 : 1)];
+  addBorders(building, drafts, airs);
+
+  if (noneIsClosed && !drafts.empty()) {
+    addDiagnosis(building.diagnoses,
+                 {"G251",
+                  "no part of the model is closed air: its covered floor is taken as one room, lit through "
+                  "every gap; close the envelope (walls, floor, ceiling, panes) for exact rooms",
+                  ""});
   }
 }
 

@@ -5,11 +5,16 @@
 #include <geometry/building.hpp>
 #include <geometry/rays.hpp>
 
+#include "doorways.hpp"
+
 namespace clerestory {
 
-/// Fills building.rooms: closed domains as large and as plump as a room, in an order and with names that do
-/// not depend on the file's order. Where no domain is closed, the covered floors of the outside are one room.
-void findRooms(Building& building, const RayScene& rays);
+/// The air that may hold rooms: of closed domains, and of the outside where it is under a roof.
+std::vector<RoomAir> airOfRooms(const Building& building, const RayScene& rays);
+
+/// Fills rooms, borders, sideRoom and the portals' rooms, in an order and with names that do not depend on
+/// the file's order. Covered air outside is a room where it is nearly enclosed or no domain is closed.
+void findRooms(Building& building, const RayScene& rays, const std::vector<RoomAir>& airs);
 
 /// Whether most of what can be seen from a point belongs to the domain: not so inside furniture or a wall.
 bool isInAir(const Building& building, const RayScene& rays, const glm::dvec3& point, std::int32_t domain);

@@ -79,12 +79,13 @@ std::vector<glm::dvec2> pieceInPlan(const Pieces& pieces, std::size_t piece) {
 }
 
 /// The windows of a room's air that are near its storey and its plan.
-std::vector<PlanWindow> windowsOf(const Building& building, const Room& room, const Plan& plan) {
+std::vector<PlanWindow> windowsOf(const Building& building, std::int32_t roomIndex, const Plan& plan) {
   constexpr double storey_m = 3.5;
+  const Room& room = building.rooms[static_cast<std::size_t>(roomIndex)];
   const Pieces& pieces = building.model.pieces;
   std::vector<PlanWindow> windows;
   for (const Portal& portal : building.portals) {
-    if (portal.inside != room.domain) continue;
+    if (portal.room != roomIndex) continue;
     double top = -std::numeric_limits<double>::infinity();
     double bottom = -top;
     for (const std::uint32_t corner : pieces.polygons[portal.piece]) {
@@ -157,7 +158,7 @@ Plan planOf(const Building& building, const SensorGrid& grid) {
   if (!(plan.low_m.x <= plan.high_m.x)) plan.low_m = plan.high_m = glm::dvec2(0.0);  // nothing to show
   plan.low_m -= glm::dvec2(margin_m);
   plan.high_m += glm::dvec2(margin_m);
-  if (inRoom) plan.windows = windowsOf(building, building.rooms[static_cast<std::size_t>(grid.room)], plan);
+  if (inRoom) plan.windows = windowsOf(building, grid.room, plan);
   return plan;
 }
 

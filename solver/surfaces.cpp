@@ -10,13 +10,6 @@
 namespace clerestory {
 namespace {
 
-std::int32_t roomOfDomain(const Building& building, std::int32_t domain) {
-  for (std::size_t i = 0; i < building.rooms.size(); ++i) {
-    if (building.rooms[i].domain == domain) return static_cast<std::int32_t>(i);
-  }
-  return -1;
-}
-
 /// Adds a leaf to the mesh, with the light of its plane at each corner.
 template <int K>
 void drawElement(const ColumnLayout& layout, const Radiosity<K>& radiosity, NodeIndex leaf,
@@ -60,14 +53,15 @@ std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double so
   for (std::int32_t domain = 0; domain < static_cast<std::int32_t>(building.domains.size()); ++domain) {
     const Radiosity<K>* radiosity = light.of(domain);
     if (radiosity == nullptr) continue;
-    const std::int32_t room = roomOfDomain(building, domain);
-    const std::int32_t order = room < 0 ? std::numeric_limits<std::int32_t>::max() : room;
     const Hierarchy& tree = radiosity->tree;
     for (NodeIndex node = 0; node < tree.size(); ++node) {
       if (tree.isCluster(node) || !tree.isLeaf(node)) continue;
       // Outdoors only what somebody looks at was solved.
       if (tree.weight[tree.sides[tree.treeSide[node]].root] <= 0.0F) continue;
-      const std::uint32_t piece = tree.sides[tree.treeSide[node]].side / 2;
+      const std::uint32_t side = tree.sides[tree.treeSide[node]].side;
+      const std::uint32_t piece = side / 2;
+      const std::int32_t room = building.sideRoom[side];
+      const std::int32_t order = room < 0 ? std::numeric_limits<std::int32_t>::max() : room;
       Row& row = rows[{order, world.pieces().surface[piece]}];
       const bool isOpen = building.domains[static_cast<std::size_t>(domain)].open;
       row.weight += static_cast<double>(isOpen ? tree.area_m2[node] : tree.weight[node]);

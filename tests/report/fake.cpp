@@ -151,9 +151,11 @@ Case office() {
   made.building.model = cleanModel();
   made.building.sideDomain = {0, -1, 0, -1, 1, -1, -1, 0};
   made.building.domains.resize(2);
-  made.building.portals = {{3, false, 0, -1}};
+  made.building.portals = {{3, false, 0, -1, 0}};
   made.building.innerGlass.assign(4, false);
-  made.building.rooms = {{"Office", 0, 34.5, 96.6, 0.0, {0, 1}}, {"Store", 1, 5.94, 16.6, 0.0, {2}}};
+  made.building.rooms = {{"Office", 0, 34.5, 96.6, 0.0, 2.8, {0, 1}},
+                         {"Store", 1, 5.94, 16.6, 0.0, 2.8, {2}}};
+  made.building.sideRoom = {0, -1, 0, -1, 1, -1, -1, 0};
   addGrid(made, "Desks", 0, {0, 0}, {6, 7}, 0.25);
   addGrid(made, "Shelves", 1, {3.8, 4.3}, {6, 7}, 0.5);
   addSurfaceValues(made.solution);

@@ -5,6 +5,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -68,8 +69,9 @@ struct Domain {
 struct Portal {
   std::uint32_t piece;
   bool frontIsInside;
-  std::int32_t inside;   ///< domain
-  std::int32_t outside;  ///< domain
+  std::int32_t inside;     ///< domain
+  std::int32_t outside;    ///< domain
+  std::int32_t room = -1;  ///< that it serves
 };
 
 struct Room {
@@ -77,8 +79,17 @@ struct Room {
   std::int32_t domain;
   double floorArea_m2 = 0.0;
   double volume_m3 = 0.0;
-  double floor_m = 0.0;  ///< height of its floor
+  double floor_m = 0.0;    ///< height of its floor
+  double ceiling_m = 0.0;  ///< height of most of its ceiling
   std::vector<std::uint32_t> floorPieces;
+};
+
+/// An opening through which two rooms share their air: a door that stands open, or none. What lies between
+/// belongs to neither and both; light passes freely.
+struct RoomBorder {
+  std::array<std::int32_t, 2> rooms;
+  glm::dvec3 from_m, to_m;  ///< at the floor
+  double height_m;
 };
 
 struct SensorGrid {
@@ -97,6 +108,8 @@ struct Building {
   std::vector<Portal> portals;
   std::vector<bool> innerGlass;  ///< per piece: glass within one domain, lets light through
   std::vector<Room> rooms;
+  std::vector<std::int32_t> sideRoom;  ///< 2 × pieces: room, or -1
+  std::vector<RoomBorder> borders;
   std::vector<SensorGrid> grids;
   std::vector<Luminaire> luminaires;          ///< the model's and the study's
   std::vector<std::int32_t> luminaireDomain;  ///< #luminaires: domain, or -1 within something solid

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Upright rays through all that lies over a cell; sideDomain tells which of the heights between are the
+// domain's air.
+#include "airmap.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <geometry/parallel.hpp>
+
+namespace clerestory {
+namespace {
+
+constexpr double cellLeast_m = 0.05;
+constexpr double cellsMost = 250000.0;
+constexpr double offset = 0.37;  // of a cell: walls lie on round numbers, cells' middles do not
+constexpr std::size_t meetingsMost = 1000;
+constexpr double upward = 0.95;  // cosine of the steepest floor
+constexpr float beneath_m = 0.1F;
+
+/// Unit vector along most of the domain's walls: the mean of their directions, in which quarter turns are
+/// alike.
+glm::dvec2 mainDirection(const Building& building, std::int32_t domain) {
+  const Pieces& pieces = building.model.pieces;
+  glm::dvec2 sum(0.0);
+  for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
+    const glm::dvec3& normal = pieces.normal[side / 2];
+    if (building.sideDomain[side] != domain || std::abs(normal.z) > 0.1) continue;
+    const double angle = 4.0 * std::atan2(normal.y, normal.x);
+    sum += pieces.area_m2[side / 2] * glm::dvec2(std::cos(angle), std::sin(angle));
+  }
+  const double turned = std::atan2(sum.y, sum.x) / 4.0;
+  if (glm::length(sum) < 1e-9 || std::abs(turned) < 1e-7) return {1.0, 0.0};
+  return {std::cos(turned), std::sin(turned)};
+}
+
+}  // namespace
+
+AirMap::AirMap(const Building& building, const RayScene& rays, std::int32_t domain,
+               std::span<const std::uint32_t> sides)
+    : along_(mainDirection(building, domain)), across_(-along_.y, along_.x) {
+  const Pieces& pieces = building.model.pieces;
+  low_ = glm::dvec2(1e300);
+  glm::dvec2 high(-1e300);
+  bottom_m_ = 1e300;
+  for (const std::uint32_t side : sides) {
+    for (const std::uint32_t corner : pieces.polygons[side / 2]) {
+      const glm::dvec2 plan(pieces.points[corner]);
+      const glm::dvec2 turned(glm::dot(plan, along_), glm::dot(plan, across_));
+      low_ = glm::min(low_, turned);
+      high = glm::max(high, turned);
+      bottom_m_ = std::min(bottom_m_, pieces.points[corner].z);
+    }
+  }
+  const glm::dvec2 size_m = glm::max(high - low_, glm::dvec2(0.0));
+  cell_m_ = std::max(cellLeast_m, std::sqrt(size_m.x * size_m.y / cellsMost));
+  low_ -= offset * cell_m_;
+  columns_ = static_cast<std::uint32_t>(std::ceil((high.x - low_.x) / cell_m_)) + 1;
+  rows_ = static_cast<std::uint32_t>(std::ceil((high.y - low_.y) / cell_m_)) + 1;
+  spans_.resize(size());
+  treads_.resize(size());
+  forEachIndex(size(), 256,
+               [&](std::size_t cell) { look(building, rays, domain, static_cast<std::uint32_t>(cell)); });
+}
+
+void AirMap::look(const Building& building, const RayScene& rays, std::int32_t domain, std::uint32_t cell) {
+  const Pieces& pieces = building.model.pieces;
+  const glm::dvec2 place = middleOf(cell);
+  glm::vec3 from(glm::dvec3(place, bottom_m_) - rays.origin());
+  from.z -= beneath_m;
+  double last_m = 0.0;
+  bool lastIsOurs = false;
+  for (std::size_t meeting = 0; meeting < meetingsMost; ++meeting) {
+    const auto hit = rays.nearest(from, {0, 0, 1}, RayScene::Barrier::opaqueAndGlass);
+    if (!hit) break;
+    from.z += hit.distance_m + rayOffset_m;
+    const glm::dvec3& normal = pieces.normal[hit.piece];
+    if (std::abs(normal.z) < 1e-3) continue;  // grazed
+    const glm::dvec3& corner = pieces.points[pieces.polygons[hit.piece][0]];
+    const double height_m = corner.z - glm::dot(glm::dvec2(normal), place - glm::dvec2(corner)) / normal.z;
+    const std::uint32_t below = hit.side();
+    const bool belowIsOurs = building.sideDomain[below] == domain;
+    if (meeting > 0 && (lastIsOurs || belowIsOurs) && height_m > last_m) {
+      spans_[cell].push_back({last_m, height_m});
+    }
+    if (std::abs(normal.z) > upward) treads_[cell].push_back({height_m, hit.piece});
+    last_m = height_m;
+    lastIsOurs = building.sideDomain[below ^ 1U] == domain;
+  }
+}
+
+std::uint32_t AirMap::cellAt(const glm::dvec2& place) const {
+  const double x = std::floor((glm::dot(place, along_) - low_.x) / cell_m_);
+  const double y = std::floor((glm::dot(place, across_) - low_.y) / cell_m_);
+  if (x < 0.0 || y < 0.0 || x >= columns_ || y >= rows_) return none;
+  return static_cast<std::uint32_t>(y) * columns_ + static_cast<std::uint32_t>(x);
+}
+
+glm::dvec2 AirMap::middleOf(std::uint32_t cell) const {
+  const double x = low_.x + (cell % columns_ + 0.5) * cell_m_;
+  const double y = low_.y + (cell / columns_ + 0.5) * cell_m_;
+  return x * along_ + y * across_;
+}
+
+std::uint32_t AirMap::neighbour(std::uint32_t cell, int way) const {
+  const std::uint32_t x = cell % columns_;
+  const std::uint32_t y = cell / columns_;
+  if (way == 0) return x + 1 < columns_ ? cell + 1 : none;
+  if (way == 1) return y + 1 < rows_ ? cell + columns_ : none;
+  if (way == 2) return x > 0 ? cell - 1 : none;
+  return y > 0 ? cell - columns_ : none;
+}
+
+glm::dvec2 AirMap::edgeTo(std::uint32_t cell, int way) const {
+  const glm::dvec2 half = 0.5 * cell_m_ * (way % 2 == 0 ? along_ : across_);
+  return middleOf(cell) + (way < 2 ? half : -half);
+}
+
+}  // namespace clerestory

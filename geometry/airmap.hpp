@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The air of one domain in plan: a raster of columns, each with its free heights, found by upright rays.
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include <span>
+
+#include <geometry/building.hpp>
+#include <geometry/rays.hpp>
+
+namespace clerestory {
+
+/// Air of the domain over one cell of the plan.
+struct AirSpan {
+  double low_m, high_m;
+};
+
+/// An upward face below or in a column.
+struct Tread {
+  double height_m;
+  std::uint32_t piece;
+};
+
+/// Square cells along the domain's main walls, so that a turned model has the same cells. Row by row.
+class AirMap {
+ public:
+  static constexpr std::uint32_t none = 0xffffffffU;
+
+  /// Covers what lies over or under the domain's `sides`.
+  AirMap(const Building& building, const RayScene& rays, std::int32_t domain,
+         std::span<const std::uint32_t> sides);
+
+  [[nodiscard]] double cell_m() const { return cell_m_; }
+  [[nodiscard]] std::uint32_t columns() const { return columns_; }
+  [[nodiscard]] std::uint32_t rows() const { return rows_; }
+  [[nodiscard]] std::uint32_t size() const { return columns_ * rows_; }
+  [[nodiscard]] std::uint32_t cellAt(const glm::dvec2& place) const;  ///< none outside the raster
+  [[nodiscard]] glm::dvec2 middleOf(std::uint32_t cell) const;
+  /// The neighbour east (0), north (1), west (2) or south (3) of a cell in the raster's own frame; none at
+  /// its rim.
+  [[nodiscard]] std::uint32_t neighbour(std::uint32_t cell, int way) const;
+  /// The middle of the edge to that neighbour.
+  [[nodiscard]] glm::dvec2 edgeTo(std::uint32_t cell, int way) const;
+
+  [[nodiscard]] const std::vector<AirSpan>& spans(std::uint32_t cell) const { return spans_[cell]; }
+  [[nodiscard]] const std::vector<Tread>& treads(std::uint32_t cell) const { return treads_[cell]; }
+
+ private:
+  void look(const Building& building, const RayScene& rays, std::int32_t domain, std::uint32_t cell);
+
+  glm::dvec2 along_{1.0, 0.0}, across_{0.0, 1.0};  // unit
+  glm::dvec2 low_{0.0};                            // in the raster's frame
+  double bottom_m_ = 0.0;
+  double cell_m_ = 0.0;
+  std::uint32_t columns_ = 0, rows_ = 0;
+  std::vector<std::vector<AirSpan>> spans_;
+  std::vector<std::vector<Tread>> treads_;
+};
+
+}  // namespace clerestory

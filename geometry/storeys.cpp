@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Storeys by the heights at which there is floor to stand on.
+#include "storeys.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace clerestory {
+namespace {
+
+constexpr double headroom_m = 1.6;
+constexpr double storeyLeast_m = 1.8;  // between floors of two storeys
+constexpr double floorLeast_m2 = 0.8;
+constexpr double furniture_m = 1.2;      // tops of beds and tables lie within this height over the floor …
+constexpr double floorShare = 0.25;      // … of which this share of their area shows around them
+constexpr double overDoors_m = 2.15;     // above the floor: above the usual lintel
+constexpr double underCeiling_m = 0.12;  // where a ceiling is lower than that
+constexpr double sameFloor_m = 0.05;
+constexpr double aboveDoors_m =
+    0.25;  // over that height, tops of wardrobes; higher air belongs to no room here
+
+/// How much floor with headroom there is, by height in steps of 2 cm. [m²]
+std::map<double, double> floorAreas(const AirMap& map) {
+  std::map<double, double> areas_m2;
+  for (std::uint32_t cell = 0; cell < map.size(); ++cell) {
+    for (const AirSpan& span : map.spans(cell)) {
+      if (span.high_m - span.low_m < headroom_m) continue;
+      areas_m2[std::round(span.low_m * 50.0) / 50.0] += map.cell_m() * map.cell_m();
+    }
+  }
+  return areas_m2;
+}
+
+/// Floors of storeys, from the lowest up: the largest first, or the lower one that shows around it.
+std::vector<double> floorsOf(const AirMap& map) {
+  const std::map<double, double> areas_m2 = floorAreas(map);
+  std::vector<std::pair<double, double>> order(areas_m2.begin(), areas_m2.end());
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::vector<double> floors;
+  for (const auto& [height_m, area_m2] : order) {
+    if (area_m2 < floorLeast_m2) break;
+    double floor_m = height_m;
+    for (const auto& [lower_m, shown_m2] : areas_m2) {
+      if (lower_m < floor_m && height_m - lower_m < furniture_m && shown_m2 >= floorShare * area_m2)
+        floor_m = lower_m;
+    }
+    const bool isNew = std::ranges::none_of(
+        floors, [&](double other_m) { return std::abs(other_m - floor_m) < storeyLeast_m; });
+    if (isNew) floors.push_back(floor_m);
+  }
+  std::sort(floors.begin(), floors.end());
+  return floors;
+}
+
+/// Height of most of the ceiling over a floor.
+double ceilingOver(const AirMap& map, double floor_m) {
+  std::map<double, std::size_t> cells;
+  for (std::uint32_t cell = 0; cell < map.size(); ++cell) {
+    for (const AirSpan& span : map.spans(cell)) {
+      if (span.low_m < floor_m + headroom_m && span.high_m > floor_m + headroom_m)
+        ++cells[std::round(span.high_m * 20.0) / 20.0];
+    }
+  }
+  const auto most = std::max_element(cells.begin(), cells.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == cells.end() ? floor_m + headroom_m : most->first;
+}
+
+StoreyCells cellsOf(const AirMap& map, const Pieces& pieces, double floor_m, double end_m) {
+  const double ceiling_m = std::min(ceilingOver(map, floor_m), end_m);
+  const double high_m = floor_m + std::clamp(ceiling_m - floor_m - underCeiling_m, headroom_m, overDoors_m);
+  StoreyCells cells{std::vector<bool>(map.size()), std::vector<bool>(map.size()),
+                    std::vector<std::int32_t>(map.size(), -1)};
+  for (std::uint32_t cell = 0; cell < map.size(); ++cell) {
+    for (const AirSpan& span : map.spans(cell)) {
+      if (span.low_m > std::min(end_m, high_m + aboveDoors_m) || span.high_m < floor_m + sameFloor_m)
+        continue;
+      if (span.high_m - span.low_m > sameFloor_m) cells.any[cell] = true;
+      if (span.high_m > high_m) cells.high[cell] = true;
+    }
+    for (const Tread& tread : map.treads(cell)) {
+      if (std::abs(tread.height_m - floor_m) > sameFloor_m) continue;
+      cells.surface[cell] = static_cast<std::int32_t>(pieces.surface[tread.piece]);
+      break;
+    }
+  }
+  return cells;
+}
+
+}  // namespace
+
+std::vector<Storey> storeysOf(const AirMap& map, const Pieces& pieces) {
+  std::vector<Storey> storeys;
+  const std::vector<double> floors = floorsOf(map);
+  for (std::size_t i = 0; i < floors.size(); ++i) {
+    const double end_m = i + 1 < floors.size() ? floors[i + 1] : std::numeric_limits<double>::infinity();
+    Storey storey{floors[i], end_m, partAtNecks(map, cellsOf(map, pieces, floors[i], end_m)), {}};
+    if (storey.parted.count == 0) continue;
+    storey.nearest = nearestRegion(map, storey.parted.region);
+    storeys.push_back(std::move(storey));
+  }
+  return storeys;
+}
+
+}  // namespace clerestory

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rooms that share their air: parted at doors, not at wide openings, with floors and panes told apart.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../scenes.hpp"
+
+namespace clerestory {
+namespace {
+
+using namespace drawn;
+
+constexpr double exact = 1e-9;
+
+/// Two rooms of 4 x 3 x 2.7 m side by side, a wall of 0.2 m with an opening of the given size between them, a
+/// pane in the south wall of the western one. One floor and one ceiling run through.
+Drawing twoRooms(double openingWidth_m, double openingHeight_m) {
+  Drawing drawing;
+  addRoomWithPane(drawing, {0, 0, 0}, {8.2, 3, 2.7}, {1.0, 1.0, 3.0, 2.0});
+  const double low = 1.5 - 0.5 * openingWidth_m;
+  const double high = 1.5 + 0.5 * openingWidth_m;
+  addBox(drawing, {4.0, 0, 0}, {4.2, low, 2.7}, plaster, 0, {0, 1, 2});
+  addBox(drawing, {4.0, high, 0}, {4.2, 3, 2.7}, plaster, 0, {0, 1, 4});
+  if (openingHeight_m < 2.7)
+    addBox(drawing, {4.0, low, openingHeight_m}, {4.2, high, 2.7}, plaster, 0, {1, 2, 4});
+  return drawing;
+}
+
+/// The scene turned about the vertical axis.
+Scene turned(Scene scene, double angle_rad) {
+  for (glm::dvec3& point : scene.points) {
+    point = {std::cos(angle_rad) * point.x - std::sin(angle_rad) * point.y,
+             std::sin(angle_rad) * point.x + std::cos(angle_rad) * point.y, point.z};
+  }
+  return scene;
+}
+
+Scene mirrored(Scene scene) {
+  for (glm::dvec3& point : scene.points) point.x = -point.x;
+  return scene;
+}
+
+std::vector<double> floorAreas(const Building& building) {
+  std::vector<double> areas_m2;
+  for (const Room& room : building.rooms) areas_m2.push_back(room.floorArea_m2);
+  std::sort(areas_m2.begin(), areas_m2.end());
+  return areas_m2;
+}
+
+TEST(Rooms, PartAtADoor) {
+  for (const double height_m : {2.05, 2.7}) {
+    const Building building = buildingOf(twoRooms(0.9, height_m).scene);
+    ASSERT_EQ(building.rooms.size(), 2U) << "door of " << height_m << " m";
+    EXPECT_EQ(building.rooms[0].domain, building.rooms[1].domain);
+    double floor_m2 = 0.0;
+    for (const Room& room : building.rooms) {
+      // The doorway's floor, 0.9 x 0.2 m, is halved: the cut runs through the middle of its reveals.
+      EXPECT_NEAR(room.floorArea_m2, 12.09, 1e-6);
+      EXPECT_NEAR(room.ceiling_m, 2.7, exact);
+      floor_m2 += room.floorArea_m2;
+    }
+    EXPECT_NEAR(floor_m2, 24.18, 1e-6);
+    ASSERT_EQ(building.borders.size(), 1U);
+    EXPECT_NEAR(building.borders[0].from_m.x, 4.1, 1e-6);
+    EXPECT_NEAR(building.borders[0].to_m.x, 4.1, 1e-6);
+    EXPECT_NEAR(glm::length(building.borders[0].to_m - building.borders[0].from_m), 0.9, 1e-6);
+    EXPECT_NEAR(building.borders[0].height_m, height_m, 1e-6);
+  }
+}
+
+TEST(Rooms, PaneBelongsToTheRoomItIsIn) {
+  const Building building = buildingOf(twoRooms(0.9, 2.05).scene);
+  ASSERT_EQ(building.portals.size(), 1U);
+  ASSERT_GE(building.portals[0].room, 0);
+  const Room& room = building.rooms[static_cast<std::size_t>(building.portals[0].room)];
+  for (const std::uint32_t piece : room.floorPieces) {
+    for (const std::uint32_t corner : building.model.pieces.polygons[piece])
+      EXPECT_LE(building.model.pieces.points[corner].x, 4.1 + 1e-6);
+  }
+}
+
+TEST(Rooms, NoSideLiesInTwo) {
+  const Building building = buildingOf(twoRooms(0.9, 2.05).scene);
+  const Pieces& pieces = building.model.pieces;
+  for (std::uint32_t side = 0; side < building.sideRoom.size(); ++side) {
+    if (building.sideRoom[side] < 0 || std::abs(pieces.normal[side / 2].z) < 0.9) continue;
+    double low = 1e300;
+    double high = -1e300;
+    for (const std::uint32_t corner : pieces.polygons[side / 2]) {
+      low = std::min(low, pieces.points[corner].x);
+      high = std::max(high, pieces.points[corner].x);
+    }
+    EXPECT_TRUE(high <= 4.1 + 1e-6 || low >= 4.1 - 1e-6) << "piece " << side / 2;
+  }
+}
+
+TEST(Rooms, WideOpeningIsOneRoom) {
+  const Building building = buildingOf(twoRooms(2.4, 2.7).scene);
+  ASSERT_EQ(building.rooms.size(), 1U);
+  // The strip of floor between the wall's ends, 0.48 m², is in pieces that lie under the wall in part.
+  EXPECT_NEAR(building.rooms[0].floorArea_m2, 24.0 + 0.2 * 2.4, 0.25);
+  EXPECT_TRUE(building.borders.empty());
+}
+
+TEST(Rooms, BedIsNoFloor) {
+  Drawing drawing;
+  addBox(drawing, {0, 0, 0}, {4, 3, 2.7});
+  addBox(drawing, {0.5, 0.5, 0.0}, {2.5, 2.1, 0.45}, wood, addObject(drawing, "bed"));
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 1U);
+  EXPECT_NEAR(building.rooms[0].floorArea_m2, 12.0, exact);
+  EXPECT_NEAR(building.rooms[0].floor_m, 0.0, exact);
+}
+
+// Rooms and areas do not depend on how the model lies, nor on the order and winding of its faces.
+TEST(Rooms, SameWhenTurnedMirroredAndShuffled) {
+  const Scene scene = twoRooms(0.9, 2.05).scene;
+  const std::vector<double> areas_m2 = floorAreas(buildingOf(scene));
+  ASSERT_EQ(areas_m2.size(), 2U);
+  const std::vector<Scene> others = {turned(scene, 1.5707963267948966), turned(scene, 0.3), mirrored(scene),
+                                     shuffled(scene, 7)};
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const Building building = buildingOf(others[i]);
+    const std::vector<double> found_m2 = floorAreas(building);
+    ASSERT_EQ(found_m2.size(), areas_m2.size()) << "scene " << i;
+    // Turned points go to the grid of 0.01 mm: 1e-5 of a room's 4 m.
+    const double tolerance = i == 1 ? 1e-5 : 1e-6;
+    for (std::size_t room = 0; room < areas_m2.size(); ++room)
+      EXPECT_NEAR(found_m2[room] / areas_m2[room], 1.0, tolerance) << "scene " << i;
+    EXPECT_EQ(building.portals.size(), 1U);
+    EXPECT_EQ(building.borders.size(), 1U);
+  }
+}
+
+}  // namespace
+}  // namespace clerestory
