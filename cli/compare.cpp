@@ -105,7 +105,9 @@ void addCompareCommand(CLI::App& program, std::function<void()>& run) {
       ->required()
       ->option_text(" ");
   command.add_option("B", arguments->reference, "the same, as the reference")->required()->option_text(" ");
-  command.add_option("-o,--output", arguments->folder, "write compare.csv and differences.csv there")
+  command
+      .add_option("-o,--output", arguments->folder,
+                  "write compare.html, compare.csv and differences.csv there")
       ->option_text("DIR");
   command.footer(
       "Prints bias, RMS, 95th percentile and maximum of the errors of A for each grid, and where they are\n"

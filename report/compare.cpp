@@ -116,7 +116,8 @@ void judge(GridComparison& grid) {
   grid.referenceMean_lx /= count;
   for (SensorPair& pair : grid.pairs) {
     const double base_lx = std::max(pair.reference_lx, 0.05 * grid.referenceMean_lx);
-    pair.error = base_lx > 0.0 ? (pair.illuminance_lx - pair.reference_lx) / base_lx : kNone;
+    const double error = (pair.illuminance_lx - pair.reference_lx) / base_lx;
+    pair.error = base_lx > 0.0 && std::isfinite(error) ? error : kNone;
   }
   grid.errors = figuresOf(errorsOf(grid.pairs));
 }
@@ -177,12 +178,15 @@ Comparison compareTables(const std::string& firstName, const SensorTable& first,
   for (const std::size_t left : unpaired.rest()) ++gridNamed(reference.readings[left].grid).onlyReference;
 
   std::vector<double> errors;
+  bool hasPairs = false;
   for (GridComparison& grid : comparison.grids) {
     judge(grid);
-    const std::vector<double> more = errorsOf(grid.pairs);
-    errors.insert(errors.end(), more.begin(), more.end());
+    hasPairs = hasPairs || !grid.pairs.empty();
+    for (const SensorPair& pair : grid.pairs) {
+      if (!std::isnan(pair.error)) errors.push_back(pair.error);
+    }
   }
-  if (errors.empty()) failWithoutPairs(firstName, first, referenceName, reference);
+  if (!hasPairs) failWithoutPairs(firstName, first, referenceName, reference);
   comparison.errors = figuresOf(errors);
   return comparison;
 }

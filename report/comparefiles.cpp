@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes a comparison's tables.
+// Writes a comparison's tables and page.
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -64,7 +64,9 @@ std::string differencesCsv(const Comparison& comparison) {
 
 void writeComparison(const fs::path& folder, const Comparison& comparison) {
   const std::vector<std::pair<std::string, std::string>> files = {
-      {"compare.csv", comparisonCsv(comparison)}, {"differences.csv", differencesCsv(comparison)}};
+      {"compare.csv", comparisonCsv(comparison)},
+      {"differences.csv", differencesCsv(comparison)},
+      {"compare.html", comparisonPage(comparison)}};
   const auto partial = [&](const std::string& name) { return folder / ("." + name + ".partial"); };
   makeFolder(folder);
   try {

@@ -143,6 +143,16 @@ TEST(Compare, ADarkReferenceHasNoErrors) {
   EXPECT_TRUE(comparisonCsv(c).ends_with("\r\ng,1,0,0,1,0,,,,\r\n")) << comparisonCsv(c);
 }
 
+TEST(Compare, ExtremeNumbersGiveAPage) {
+  const SensorTable far =
+      table({reading("g", -1e12, 1e12), reading("g", 1e12, 1e-300), reading("h", 0, 1e12)});
+  const SensorTable faint = table({reading("g", -1e12, 1e-300), reading("g", 1e12, 0), reading("h", 0, 1)});
+  const std::string page = comparisonPage(compared(far, faint));
+  for (const char* wrong : {"=\"nan", "=\"inf", "=\"-inf", "x=\"\"", "offset=\"\""}) {
+    EXPECT_EQ(page.find(wrong), std::string::npos) << wrong;
+  }
+}
+
 TEST(Compare, WorstPlacesComeBySizeOfTheirErrors) {
   const Comparison c = compared(table({reading("g", 0, 101), reading("g", 1, 50), reading("h", 0, 130)}),
                                 table({reading("g", 0, 100), reading("g", 1, 100), reading("h", 0, 100)}));
@@ -161,6 +171,20 @@ TEST(Compare, TablesAreRfc4180AndHarmless) {
   EXPECT_EQ(differencesCsv(c),
             "grid,x_m,y_m,z_m,illuminance_lx,reference_lx,difference_lx,error_pct\r\n"
             "\"'=cmd(),\"\"x\"\"\",0.25,0,0.85,110,100,10,10\r\n");
+}
+
+TEST(Compare, ThePageShowsErrorsAndRunsNoName) {
+  const std::string name = "<script>alert(1)</script>";
+  const SensorTable first = table({reading(name, 0, 110), reading(name, 1, 90), reading("dark", 0, 1)});
+  const SensorTable reference = table({reading(name, 0, 100), reading(name, 1, 100), reading("dark", 0, 0)});
+  const std::string page = comparisonPage(compareTables(name, first, "\"onload=x", reference));
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_EQ(page.find("\"onload"), std::string::npos);
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
+  EXPECT_NE(page.find("fill=\"#e08a2e\"><title>10.00 % at 0.00, 0.00, 0.85 m"), std::string::npos) << page;
+  EXPECT_NE(page.find("fill=\"#5b9bd5\"><title>\u221210.00 %"), std::string::npos);
+  EXPECT_NE(page.find("The reference is dark"), std::string::npos);
+  EXPECT_NE(page.find("<td class=\"n\">–</td>"), std::string::npos);  // its figures
 }
 
 TEST(SensorTable, ReadsAReportsColumnsAndOtherPrograms) {
@@ -200,6 +224,7 @@ TEST(Compare, IsWrittenBesideNoReport) {
   writeComparison(folder.path() / "new" / "place", c);
   EXPECT_EQ(fake::contentOf(folder.path() / "new" / "place" / "compare.csv"), comparisonCsv(c));
   EXPECT_EQ(fake::contentOf(folder.path() / "new" / "place" / "differences.csv"), differencesCsv(c));
+  EXPECT_EQ(fake::contentOf(folder.path() / "new" / "place" / "compare.html"), comparisonPage(c));
   const fake::Case made = fake::office();
   writeReport(folder.path() / "report", made.input());
   EXPECT_THROW(writeComparison(folder.path() / "report", c), InputError);

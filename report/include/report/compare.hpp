@@ -39,7 +39,7 @@ struct GridComparison {
 struct Comparison {
   std::string first, reference;  ///< what was compared, as the user named it
   std::vector<GridComparison> grids;
-  ErrorFigures errors;  ///< over the sensors of all grids
+  ErrorFigures errors;  ///< over the pairs of all grids that are lit in the reference
 };
 
 /// Pairs the sensors of both tables: those of grids of one name that lie within 1 mm and look the same way.
@@ -60,8 +60,11 @@ std::string comparisonCsv(const Comparison& comparison);
 /// A row for each pair of sensors. RFC 4180.
 std::string differencesCsv(const Comparison& comparison);
 
-/// Writes these as compare.csv and differences.csv into `folder`, which is made where there is none. Throws
-/// InputError where it holds a report or cannot be made, MachineError where the disk fails.
+/// A page by itself: figures, largest errors, and a plan of the errors of each grid.
+std::string comparisonPage(const Comparison& comparison);
+
+/// Writes these as compare.csv, differences.csv and compare.html into `folder`, which is made where there is
+/// none. Throws InputError where it holds a report or cannot be made, MachineError where the disk fails.
 void writeComparison(const std::filesystem::path& folder, const Comparison& comparison);
 
 }  // namespace clerestory
