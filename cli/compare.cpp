@@ -58,13 +58,11 @@ std::string figuresText(const Comparison& comparison) {
     table.add({name, std::to_string(sensors), mean, referenceMean, percentText(errors.bias),
                percentText(errors.rms), percentText(errors.p95), percentText(errors.maximum), missing});
   };
-  std::size_t sensors = 0;
   for (const GridComparison& grid : comparison.grids) {
     add(nameOf(grid), grid.pairs.size(), luxText(grid.mean_lx), luxText(grid.referenceMean_lx), grid.errors,
         missingText(grid));
-    sensors += grid.pairs.size();
   }
-  if (comparison.grids.size() > 1) add("all", sensors, "", "", comparison.errors, "");
+  if (comparison.grids.size() > 1) add("all", comparison.pairs, "", "", comparison.errors, "");
   return table.text();
 }
 

@@ -155,7 +155,7 @@ std::string gridNames(const SensorTable& table) {
 
 Comparison compareTables(const std::string& firstName, const SensorTable& first,
                          const std::string& referenceName, const SensorTable& reference) {
-  Comparison comparison{firstName, referenceName, {}, {}};
+  Comparison comparison{firstName, referenceName, {}, 0, {}};
   std::map<std::string, std::size_t> known;
   const auto gridNamed = [&](const std::string& name) -> GridComparison& {
     const auto [place, isNew] = known.emplace(name, comparison.grids.size());
@@ -187,6 +187,7 @@ Comparison compareTables(const std::string& firstName, const SensorTable& first,
     }
   }
   if (!hasPairs) failWithoutPairs(firstName, first, referenceName, reference);
+  comparison.pairs = errors.size();
   comparison.errors = figuresOf(errors);
   return comparison;
 }

@@ -122,21 +122,20 @@ std::string planSvg(const GridComparison& grid, double end, std::size_t number) 
 std::string figuresTable(const Comparison& comparison) {
   const auto countText = [](std::size_t count) { return fixedNumber(static_cast<double>(count), 0); };
   std::vector<std::vector<std::string>> rows;
-  std::size_t sensors = 0, onlyFirst = 0, onlyReference = 0;
+  std::size_t onlyFirst = 0, onlyReference = 0;
   for (const GridComparison& grid : comparison.grids) {
     const ErrorFigures& errors = grid.errors;
     rows.push_back({nameOf(grid), countText(grid.pairs.size()), countText(grid.onlyFirst),
                     countText(grid.onlyReference), fixedNumber(grid.mean_lx, 1),
                     fixedNumber(grid.referenceMean_lx, 1), percentText(errors.bias), percentText(errors.rms),
                     percentText(errors.p95), percentText(errors.maximum)});
-    sensors += grid.pairs.size();
     onlyFirst += grid.onlyFirst;
     onlyReference += grid.onlyReference;
   }
   if (rows.size() > 1) {
     const ErrorFigures& errors = comparison.errors;
-    rows.push_back({"All", countText(sensors), countText(onlyFirst), countText(onlyReference), "", "",
-                    percentText(errors.bias), percentText(errors.rms), percentText(errors.p95),
+    rows.push_back({"All", countText(comparison.pairs), countText(onlyFirst), countText(onlyReference), "",
+                    "", percentText(errors.bias), percentText(errors.rms), percentText(errors.p95),
                     percentText(errors.maximum)});
   }
   return tableHtml("Errors by grid",
@@ -176,7 +175,12 @@ std::string worstTable(const Comparison& comparison) {
 
 std::string plansSection(const Comparison& comparison) {
   const double end = scaleEnd(comparison.errors.p95);
-  std::string html = sectionOpening("plans", "Where they differ");
+  std::string html = sectionOpening("plans", "Where they differ") +
+                     "<p class=\"note\">Errors in %: orange where there is more light than in the reference, "
+                     "blue where there is "
+                     "less. The scale is the same in all plans; larger errors have the colours of its ends. "
+                     "Seen from above, y "
+                     "upwards.</p>\n";
   for (std::size_t g = 0; g < comparison.grids.size(); ++g) {
     const GridComparison& grid = comparison.grids[g];
     html += "<h3>" + nameOf(grid) + "</h3>\n";
@@ -185,11 +189,7 @@ std::string plansSection(const Comparison& comparison) {
     } else if (std::isnan(grid.errors.rms)) {
       html += "<p>The reference is dark: there is no error to state.</p>\n";
     } else {
-      html +=
-          "<figure>" + planSvg(grid, end, g) +
-          "<figcaption>Error in %: orange where there is more light than in the reference, blue where there "
-          "is less. The scale is the same in all plans; larger errors have its ends' colours. Seen from "
-          "above, y upwards.</figcaption></figure>\n";
+      html += "<figure>" + planSvg(grid, end, g) + "</figure>\n";
     }
   }
   return html + "</section>\n";

@@ -143,6 +143,13 @@ TEST(Compare, ADarkReferenceHasNoErrors) {
   EXPECT_TRUE(comparisonCsv(c).ends_with("\r\ng,1,0,0,1,0,,,,\r\n")) << comparisonCsv(c);
 }
 
+TEST(Compare, FiguresOfAllLeaveOutWhatIsDarkInTheReference) {
+  const Comparison c = compared(table({reading("lit", 0, 11), reading("dark", 0, 0)}),
+                                table({reading("lit", 0, 10), reading("dark", 0, 0)}));
+  EXPECT_EQ(c.pairs, 1U);
+  EXPECT_DOUBLE_EQ(c.errors.bias, 0.1);
+}
+
 TEST(Compare, ExtremeNumbersGiveAPage) {
   const SensorTable far =
       table({reading("g", -1e12, 1e12), reading("g", 1e12, 1e-300), reading("h", 0, 1e12)});

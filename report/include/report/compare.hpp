@@ -39,7 +39,8 @@ struct GridComparison {
 struct Comparison {
   std::string first, reference;  ///< what was compared, as the user named it
   std::vector<GridComparison> grids;
-  ErrorFigures errors;  ///< over the pairs of all grids that are lit in the reference
+  std::size_t pairs = 0;  ///< of all grids, but those that are dark in the reference
+  ErrorFigures errors;    ///< over these
 };
 
 /// Pairs the sensors of both tables: those of grids of one name that lie within 1 mm and look the same way.
