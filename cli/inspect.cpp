@@ -17,6 +17,7 @@
 
 #include "input.hpp"
 #include "progress.hpp"
+#include "texttable.hpp"
 
 namespace clerestory {
 
@@ -158,50 +159,8 @@ std::string colourText(const glm::dvec3& colour, int digits) {
   return text.str();
 }
 
-// How many characters of UTF-8 text there are.
-std::size_t lengthOf(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
-}
-
-/// A table of text whose columns are as wide as what stands in them; all but the first and the last are
-/// numbers.
-class Table {
- public:
-  explicit Table(std::vector<std::string> header) { rows_.push_back(std::move(header)); }
-  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
-  [[nodiscard]] std::string text() const {
-    std::vector<std::size_t> widths(rows_.front().size());
-    for (const auto& row : rows_) {
-      for (std::size_t i = 0; i < row.size(); ++i) {
-        widths[i] = std::max(widths[i], lengthOf(row[i]));
-      }
-    }
-    std::string text;
-    for (const auto& row : rows_) {
-      std::string line;
-      for (std::size_t i = 0; i < row.size(); ++i) {
-        const std::string space(widths[i] - lengthOf(row[i]), ' ');
-        const bool isNumber = i > 0 && i + 1 < row.size();
-        line += "  " + (isNumber ? space + row[i] : row[i] + space);
-      }
-      text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-    }
-    return text;
-  }
-
- private:
-  std::vector<std::vector<std::string>> rows_;
-};
-
-std::string number(double value, int digits) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(digits) << value;
-  return text.str();
-}
-
 std::string materialsText(const Building& building, const Totals& totals) {
-  Table table({"material", "area m2", "reflectance", "transmittance", "exitance lm/m2", ""});
+  TextTable table({"material", "area m2", "reflectance", "transmittance", "exitance lm/m2", ""});
   for (std::size_t i = 0; i < building.model.materials.size(); ++i) {
     const Material& material = building.model.materials[i];
     const bool emits = material.exitance_lm_m2 != glm::dvec3(0.0);
@@ -217,7 +176,7 @@ std::string materialsText(const Building& building, const Totals& totals) {
 }
 
 std::string roomsText(const Building& building) {
-  Table table(
+  TextTable table(
       {"room", "floor m2", "volume m3", "floor at m", "ceiling at m", "panes", "panes m2", "opens to"});
   for (std::size_t i = 0; i < building.rooms.size(); ++i) {
     const Room& room = building.rooms[i];
@@ -238,7 +197,7 @@ std::string roomsText(const Building& building) {
 }
 
 std::string airText(const Building& building) {
-  Table table({"air", "surface m2", "what it is"});
+  TextTable table({"air", "surface m2", "what it is"});
   std::size_t dark = 0;
   double dark_m2 = 0.0;
   for (std::size_t i = 0; i < building.domains.size(); ++i) {

@@ -12,6 +12,7 @@
 
 #include <import/error.hpp>
 
+#include "compare.hpp"
 #include "exit_code.hpp"
 #include "inspect.hpp"
 #include "interrupt.hpp"
@@ -51,12 +52,14 @@ std::optional<ExitCode> parse(int argc, char** argv, std::function<void()>& run)
       "  clerestory study office.glb        a model alone: overcast sky, a grid above each floor\n"
       "  clerestory study study.toml        a study with its own sky, materials, grids and views\n"
       "  clerestory inspect office.glb      what is in the model and what had to be repaired\n"
+      "  clerestory compare east west       how far one report or table lies from another\n"
       "  clerestory study --help            every option of a command, with its default\n\n"
       "Exit codes: 0 done, 1 the input is wrong, 2 the command line is wrong, 3 the machine failed (disk, "
       "memory),\n128 + n ended by signal n.");
   program.require_subcommand(1);
   addStudyCommand(program, commandLineOf(argc, argv), run);
   addInspectCommand(program, run);
+  addCompareCommand(program, run);
 
   if (argc < 2) {
     std::cerr << program.help();

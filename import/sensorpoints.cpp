@@ -17,31 +17,6 @@ namespace {
 constexpr std::uintmax_t kMaxBytes = 1ULL << 30U;
 constexpr std::size_t kMissing = ~std::size_t{0};
 
-/// The fields of a CSV line, quotes taken off.
-std::vector<std::string> csvFields(std::string_view line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"') {
-      const bool doubled = quoted && i + 1 < line.size() && line[i + 1] == '"';
-      if (doubled) {
-        fields.back() += '"';
-        ++i;
-      } else {
-        quoted = !quoted;
-      }
-    } else if (line[i] == ',' && !quoted) {
-      fields.emplace_back();
-    } else {
-      fields.back() += line[i];
-    }
-  }
-  for (std::string& field : fields) {
-    field = std::string(trimmed(field));
-  }
-  return fields;
-}
-
 std::vector<std::string> fieldsOf(std::string_view line) {
   if (line.find(',') != std::string_view::npos) {
     return csvFields(line);

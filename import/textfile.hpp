@@ -54,6 +54,9 @@ class LineReader {
 /// Appends to `words` (cleared first) what blanks separate in `line`; a word that begins with # ends it.
 void splitWords(std::string_view line, std::vector<std::string_view>& words);
 
+/// The fields of a line of CSV, quotes and blanks around them taken off.
+std::vector<std::string> csvFields(std::string_view line);
+
 std::string_view trimmed(std::string_view text);
 std::string lowerCase(std::string_view text);  ///< ASCII only
 

@@ -186,7 +186,8 @@ class Program : public testing::Test {
 };
 
 TEST_F(Program, HelpAndVersionSucceed) {
-  for (const std::string arguments : {"--help", "study --help", "inspect --help", "--version"}) {
+  for (const std::string arguments :
+       {"--help", "study --help", "inspect --help", "compare --help", "--version"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exitCode, 0) << arguments;
     EXPECT_NE(outcome.output.find("clerestory"), std::string::npos) << arguments;
@@ -395,6 +396,42 @@ TEST_F(Program, SameBytesOnAnyNumberOfThreadsAndWithAnyCache) {
     const fs::path other = report("cache-" + cache, "--threads 2 --link-cache " + cache);
     expectSame(results(one, false), results(other, false), "with a cache of " + cache);
   }
+}
+
+TEST_F(Program, CompareTellsHowFarOneReportLiesFromAnother) {
+  ASSERT_EQ(run("study study.toml -o report --no-pictures --quiet").exitCode, 0);
+  // The same sensors by another program: a tenth more light at each, the first left out.
+  const Table sensors = rowsOf(readFile(folder_ / "report" / "sensors.csv"), kSensorColumns);
+  std::ofstream brighter(folder_ / "brighter.csv");
+  brighter.precision(17);
+  brighter << "x,y,z,lux\n";
+  for (std::size_t row = 1; row < sensors.size(); ++row) {
+    brighter << sensors[row][2] << ',' << sensors[row][3] << ',' << sensors[row][4] << ','
+             << 1.1 * std::stod(sensors[row][8]) << '\n';
+  }
+  brighter.close();
+
+  const Outcome same = run("compare report report");
+  EXPECT_EQ(same.exitCode, 0) << same.messages;
+  EXPECT_NE(same.output.find("Desks"), std::string::npos) << same.output;
+
+  const Outcome outcome = run("compare brighter.csv report -o 'a b'");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.messages;
+  EXPECT_NE(outcome.output.find("1 only in the reference"), std::string::npos) << outcome.output;
+  const Table figures = rowsOf(readFile(folder_ / "a b" / "compare.csv"), "grid,sensors,only_first,");
+  ASSERT_EQ(figures.size(), 1U);
+  EXPECT_EQ(figures[0][0], "Desks");
+  EXPECT_EQ(figures[0][1], std::to_string(sensors.size() - 1));
+  EXPECT_NEAR(std::stod(figures[0][6]), 10.0, 1e-4);  // bias, RMS and all: tables hold a float's digits
+  EXPECT_NEAR(std::stod(figures[0][9]), 10.0, 1e-4);
+  EXPECT_EQ(rowsOf(readFile(folder_ / "a b" / "differences.csv"), "grid,x_m,").size(), sensors.size() - 1);
+
+  write("elsewhere.csv", "x_m,y_m,z_m,illuminance_lx\n100,100,100,5\n");
+  expectFailure("compare report elsewhere.csv", 1, {"no sensor in common"});
+  expectFailure("compare report .", 1, {"sensors.csv"});
+  expectFailure("compare report missing.csv", 1, {"missing.csv"});
+  expectFailure("compare report", 2, {"B"});
+  expectFailure("compare report brighter.csv -o report", 1, {"choose another"});
 }
 
 }  // namespace
