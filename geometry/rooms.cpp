@@ -8,9 +8,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <map>
+#include <optional>
+#include <string>
 
 #include <geometry/sampling.hpp>
+
+#include "gaps.hpp"
 
 namespace clerestory {
 namespace {
@@ -316,6 +321,32 @@ void addBorders(Building& building, const std::vector<Draft>& drafts, const std:
   }
 }
 
+/// Where and how wide the largest gap of a room is, in words; empty where none is found within 3 m of it.
+std::string gapText(const Building& building, const Room& room) {
+  constexpr double around_m = 3.0;
+  const Pieces& pieces = building.model.pieces;
+  glm::dvec3 low(1e300);
+  glm::dvec3 high(-1e300);
+  std::uint32_t largest = room.floorPieces.front();
+  for (const std::uint32_t piece : room.floorPieces) {
+    if (pieces.area_m2[piece] > pieces.area_m2[largest]) largest = piece;
+    for (const std::uint32_t corner : pieces.polygons[piece]) {
+      low = glm::min(low, pieces.points[corner]);
+      high = glm::max(high, pieces.points[corner]);
+    }
+  }
+  low -= around_m;
+  high = glm::dvec3(high.x, high.y, room.ceiling_m) + around_m;
+  const glm::dvec3 inside =
+      centreOf(pieces, largest) + glm::dvec3(0.0, 0.0, 0.5 * (room.ceiling_m - room.floor_m));
+  const std::optional<Gap> gap = widestGap(pieces, inside, low, high);
+  if (!gap) return {};
+  char text[120];
+  std::snprintf(text, sizeof text, "; the largest gap is about %.2f m wide, at (%.2f, %.2f, %.2f)",
+                gap->width_m, gap->place_m.x, gap->place_m.y, gap->place_m.z);
+  return text;
+}
+
 }  // namespace
 
 void findRooms(Building& building, const RayScene& rays, const std::vector<RoomAir>& airs) {
@@ -368,7 +399,8 @@ void findRooms(Building& building, const RayScene& rays, const std::vector<RoomA
     addDiagnosis(building.diagnoses,
                  {"G251",
                   "no part of the model is closed air: its covered floor is taken as one room, lit through "
-                  "every gap; close the envelope (walls, floor, ceiling, panes) for exact rooms",
+                  "every gap; close the envelope (walls, floor, ceiling, panes) for exact rooms" +
+                      gapText(building, drafts.front().room),
                   ""});
   }
 }

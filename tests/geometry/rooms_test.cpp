@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 #include "../scenes.hpp"
 
@@ -132,6 +134,30 @@ TEST(Rooms, SameWhenTurnedMirroredAndShuffled) {
     EXPECT_EQ(building.portals.size(), 1U);
     EXPECT_EQ(building.borders.size(), 1U);
   }
+}
+
+TEST(Rooms, LargestGapIsNamed) {
+  Drawing drawing;
+  addRoomWithHole(drawing, {0, 0, 0}, {4, 3, 3}, {1.0, 1.0, 1.6, 2.4});
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.diagnoses.size(), 1U);
+  EXPECT_EQ(building.diagnoses[0].code, "G251");
+  const std::string& text = building.diagnoses[0].message;
+  double width_m = 0.0;
+  double x = 0.0;
+  double y = 0.0;
+  double z = 0.0;
+  const std::size_t at = text.find("the largest gap");
+  ASSERT_NE(at, std::string::npos) << text;
+  ASSERT_EQ(std::sscanf(text.c_str() + at, "the largest gap is about %lf m wide, at (%lf, %lf, %lf)",
+                        &width_m, &x, &y, &z),
+            4);
+  EXPECT_NEAR(width_m, 0.6, 0.07);  // two voxels
+  EXPECT_NEAR(y, 0.0, 0.1);
+  EXPECT_GT(x, 1.0);
+  EXPECT_LT(x, 1.6);
+  EXPECT_GT(z, 1.0);
+  EXPECT_LT(z, 2.4);
 }
 
 }  // namespace

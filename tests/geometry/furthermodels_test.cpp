@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rooms and panes of models that others made; built only where CLERESTORY_MODELS says where these are.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "../scenes.hpp"
+
+namespace clerestory {
+namespace {
+
+Building buildingOfModel(const std::string& file, const char* upAxis) {
+  ModelOptions options;
+  options.upAxis = upAxis;
+  return drawn::buildingOf(readModel(std::string(CLERESTORY_MODELS) + "/" + file, options));
+}
+
+/// Rooms' floor areas by size.
+std::vector<double> floorsOf(const Building& building) {
+  std::vector<double> floors_m2;
+  for (const Room& room : building.rooms) floors_m2.push_back(room.floorArea_m2);
+  std::sort(floors_m2.begin(), floors_m2.end());
+  return floors_m2;
+}
+
+/// `expected_m2`: floors as drawn, by size. The parts of a floor below doors may go to either room.
+void expectRooms(const Building& building, const std::vector<double>& expected_m2, std::size_t panes) {
+  const std::vector<double> floors_m2 = floorsOf(building);
+  ASSERT_EQ(floors_m2.size(), expected_m2.size());
+  for (std::size_t i = 0; i < expected_m2.size(); ++i) EXPECT_NEAR(floors_m2[i], expected_m2[i], 0.3);
+  EXPECT_EQ(building.portals.size(), panes);
+  for (const Portal& portal : building.portals) EXPECT_GE(portal.room, 0);
+}
+
+// Its fifth room is a balcony, outdoors.
+TEST(FurtherModels, StudioShellHasFourRooms) {
+  expectRooms(buildingOfModel("room-sh3d-Studio/Studio_shell.obj", "y"), {2.72, 4.30, 8.25, 12.00}, 5);
+}
+
+// A wardrobe of 1 m² reaches the ceiling.
+TEST(FurtherModels, FurnishedStudioHasFourRooms) {
+  expectRooms(buildingOfModel("room-sh3d-Studio/Studio.obj", "y"), {2.72, 4.30, 8.25, 11.0}, 5);
+}
+
+TEST(FurtherModels, ApartmentHasSevenRooms) {
+  for (const char* file : {"2BedroomApartment_shell.obj", "2BedroomApartment.obj"}) {
+    SCOPED_TRACE(file);
+    expectRooms(buildingOfModel(std::string("room-sh3d-2BedroomApartment/") + file, "y"),
+                {1.11, 4.83, 9.77, 9.98, 10.61, 10.91, 16.02}, 10);
+  }
+}
+
+TEST(FurtherModels, HoneybeeHouseAndOffice) {
+  expectRooms(buildingOfModel("room-honeybee/single_family_home.obj", "z"),
+              {14.25, 16.0, 16.0, 16.62, 16.63, 18.2, 47.35}, 8);
+  expectRooms(buildingOfModel("room-honeybee/model_complete_multi_zone_office.obj", "z"),
+              {100.0, 200.0, 200.0}, 8);
+}
+
+TEST(FurtherModels, OpenPlanOfficeAndTutorialRoomAreOneRoom) {
+  expectRooms(buildingOfModel("room-lbnl-openplan/frads_openplan.obj", "z"), {170.96}, 8);
+  expectRooms(buildingOfModel("room-radiance-tutorial/rt_room.obj", "z"), {37.16}, 1);
+}
+
+// Two dwellings of seven rooms each: all panes serve one of them.
+TEST(FurtherModels, DuplexHasFourteenRooms) {
+  const Building building = buildingOfModel("room-duplex-ifc/duplex_webifc.obj", "y");
+  EXPECT_EQ(building.rooms.size(), 14U);
+  EXPECT_EQ(building.portals.size(), 24U);
+  for (const Portal& portal : building.portals) EXPECT_GE(portal.room, 0);
+}
+
+}  // namespace
+}  // namespace clerestory
