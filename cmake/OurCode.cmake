@@ -36,7 +36,9 @@ else()
   if(CLERESTORY_SANITIZE)
     target_compile_options(clerestory_our_code INTERFACE
       -fsanitize=${CLERESTORY_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
-    target_link_options(clerestory_our_code INTERFACE -fsanitize=${CLERESTORY_SANITIZE})
+    # The sanitizers stand between us and dlopen, which then looks along the program's RPATH, not its RUNPATH.
+    target_link_options(clerestory_our_code INTERFACE -fsanitize=${CLERESTORY_SANITIZE}
+                        $<$<PLATFORM_ID:Linux>:-Wl,--disable-new-dtags>)
   endif()
 endif()
 
