@@ -190,7 +190,8 @@ void runStudy(const StudyArguments& arguments) {
                                    .threads = options.threads > 0 ? options.threads : processorCount(),
                                    .linkCacheBytes = options.linkCacheBytes,
                                    .stageSeconds = clock.stageSeconds(),
-                                   .peakMemoryBytes = peakMemoryBytes()}};
+                                   .peakMemoryBytes = peakMemoryBytes()},
+                           .pictures = options.pictures};
   writeReport(folder, report);
 
   const std::string result = studyJson(report);
@@ -259,7 +260,8 @@ void addStudyCommand(CLI::App& program, const std::string& commandLine, std::fun
           },
           "memory for links that are kept; the results do not depend on it (16M)")
       ->option_text("SIZE");
-  command.add_flag("--no-pictures", arguments->noPictures, "leave the views out");
+  command.add_flag("--no-pictures", arguments->noPictures,
+                   "leave out the views, and plans as files of their own");
   command.add_flag("--quiet", arguments->quiet, "say nothing on standard error but what went wrong");
   command.add_flag("--json", arguments->json, "print study.json on standard output too");
   command.footer(

@@ -37,6 +37,7 @@ std::vector<PageView> writeViews(const fs::path& folder, const ReportInput& inpu
 }
 
 /// Writes the plans; gives the bytes of those that have too many sensors to be drawn in the page one by one.
+/// Those are written even where no pictures are asked for: the page would show nothing else of their grid.
 std::vector<std::string> writePlans(const fs::path& folder, const ReportInput& input) {
   constexpr std::size_t mostDrawnSensors = 12'000;
   std::vector<std::string> names;
@@ -46,8 +47,8 @@ std::vector<std::string> writePlans(const fs::path& folder, const ReportInput& i
   std::vector<std::string> pictures;
   for (std::size_t g = 0; g < files.size(); ++g) {
     const fs::path file = folder / ("plan-" + files[g] + ".png");
-    writePng(file, planPicture(input, g, scale));
     const bool isDrawn = input.building.grids[g].points.size() <= mostDrawnSensors;
+    if (input.pictures || !isDrawn) writePng(file, planPicture(input, g, scale));
     pictures.push_back(isDrawn ? std::string() : readFile(file));
   }
   return pictures;

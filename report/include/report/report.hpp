@@ -29,6 +29,7 @@ struct ReportInput {
   const Solution& solution;
   std::vector<Diagnosis> diagnoses;  ///< of all stages
   RunInfo run;
+  bool pictures = true;  ///< whether views and plans are written as files of their own
 };
 
 /// Writes the whole report beside `folder` and then puts it in its place, so that an older report there stays
