@@ -6,173 +6,110 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
-#include <vector>
 
 #include <geometry/sampling.hpp>
 #include <solver/formfactor.hpp>
 
-#include "sphericalpolygon.hpp"
-
 namespace clerestory {
 namespace {
 
-constexpr float samplesMost = 1024.0F;  // at first
-constexpr float samplesMoreOften = 4.0F;
-constexpr int roundsOfMore = 2;
+constexpr float samplesLeast = 2.0F;   // of a polygon
 constexpr float lampRaysLeast = 8.0F;  // of a luminaire
 
-/// A sample's place in its sequence, its weight and what it saw.
-struct Seen {
-  float u, v, weight, strength;
-};
-
-/// Variance of the weighted mean, from what differs within cells that hold two samples each on average: the
-/// sequence is even, so what differs between cells is no error.
-float varianceWithinCells(std::span<const Seen> samples, float mean, float weights) {
-  constexpr std::size_t sideMost = 64;
-  struct Cell {
-    float count = 0.0F, sum = 0.0F, squares = 0.0F;
-  };
-  const auto side = std::clamp(static_cast<std::size_t>(std::sqrt(0.5F * static_cast<float>(samples.size()))),
-                               std::size_t{1}, sideMost);
-  std::vector<Cell> cells(side * side);
-  for (const Seen& sample : samples) {
-    const auto column = static_cast<std::size_t>(sample.u * static_cast<float>(side));
-    const auto row = static_cast<std::size_t>(sample.v * static_cast<float>(side));
-    Cell& cell = cells[std::min(row, side - 1) * side + std::min(column, side - 1)];
-    const float value = sample.weight * (sample.strength - mean) / weights;
-    cell.count += 1.0F;
-    cell.sum += value;
-    cell.squares += value * value;
-  }
-  float variance = 0.0F;
-  float counted = 0.0F;
-  for (const Cell& cell : cells) {
-    if (cell.count < 2.0F) continue;
-    counted += cell.count;
-    const float within = std::max(cell.squares - cell.sum * cell.sum / cell.count, 0.0F);  // but for rounding
-    variance += within * cell.count / (cell.count - 1.0F);
-  }
-  return counted > 0.0F ? variance * static_cast<float>(samples.size()) / counted : 0.0F;
-}
-
 }  // namespace
 
 template <int K>
-DirectLight<K> directFromPolygon(const ColumnLayout& layout, const glm::vec3& receiver,
-                                 const glm::vec3& normal, std::span<const glm::vec3> polygon,
-                                 DirectSamples samples, std::uint64_t key, const Luminance<K>& luminance) {
-  DirectLight<K> result;
-  const float whole = pointToPolygon(receiver, normal, polygon);
-  if (whole <= 0.0F) return result;
-  const SphericalPolygon seenPolygon(receiver, normal, polygon);
-  if (seenPolygon.solidAngle_sr() <= 0.0) return result;
-  const glm::vec3 polygonNormal =
-      glm::normalize(glm::cross(polygon[1] - polygon[0], polygon[polygon.size() - 1] - polygon[0]));
-  const float height_m = glm::dot(polygon[0] - receiver, polygonNormal);
-  const float most = samplesMost * std::max(1.0F, samples.least / samplesMost);
-  const auto count = static_cast<std::uint32_t>(
-      std::clamp(std::ceil(std::max(samples.perFormFactor * whole, samples.least)), 1.0F, most));
-  const Sequence sequence(key);
-  std::vector<Seen> seen(count);
-  Columns<K> sum;
-  float weights = 0.0F;
-  float strengths = 0.0F;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    Seen& own = seen[i];
-    own = {sequence(i, 0), sequence(i, 1), 0.0F, 0.0F};
-    const glm::vec3 direction = seenPolygon.direction(own.u, own.v);
-    const float approach = glm::dot(direction, polygonNormal);
-    own.weight = std::max(glm::dot(direction, normal), 0.0F);
-    if (approach * height_m <= 0.0F || own.weight <= 0.0F) continue;
-    const Columns<K> light = luminance(receiver + (height_m / approach) * direction);
-    own.strength = layout.strength(light);
-    sum += own.weight * light;
-    weights += own.weight;
-    strengths += own.weight * own.strength;
-    ++result.rays;
-  }
-  if (weights <= 0.0F) return result;
-  const float scale = std::numbers::pi_v<float> * whole;
-  result.illuminance_lx = (scale / weights) * sum;
-  result.deviation_lx = scale * std::sqrt(varianceWithinCells(seen, strengths / weights, weights));
-  return result;
-}
-
-namespace {
-
-/// Light of all polygons (number, samples -> DirectLight), those that are uneven by more samples.
-template <int K, class Polygon>
-DirectLight<K> sumOf(const ColumnLayout& layout, std::size_t count, DirectSamples samples,
-                     const Polygon& polygon) {
-  std::vector<DirectLight<K>> lights;
-  lights.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) lights.push_back(polygon(i, samples));
-  const auto added = [&] {
-    DirectLight<K> sum;
-    float variance = 0.0F;
-    for (const DirectLight<K>& light : lights) {
-      sum.illuminance_lx += light.illuminance_lx;
-      variance += light.deviation_lx * light.deviation_lx;
-      sum.rays += light.rays;
-    }
-    sum.deviation_lx = std::sqrt(variance);
-    return sum;
-  };
-  DirectLight<K> sum = added();
-  for (int round = 0; round < roundsOfMore; ++round) {
-    const float allowed_lx = samples.deviationMost * layout.strength(sum.illuminance_lx);
-    if (!(sum.deviation_lx > allowed_lx)) break;
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto rays = static_cast<float>(lights[i].rays);
-      if (lights[i].deviation_lx > allowed_lx)
-        lights[i] = polygon(i, {samples.perFormFactor, samplesMoreOften * rays, samples.deviationMost});
-    }
-    sum = added();
-  }
-  return sum;
-}
-
-}  // namespace
+PolygonLight<K>::PolygonLight(const ColumnLayout& layout, const glm::vec3& receiver, const glm::vec3& normal,
+                              std::span<const glm::vec3> polygon, std::uint64_t key, Luminance<K> luminance)
+    : layout_(layout),
+      receiver_(receiver),
+      normal_(normal),
+      seen_(receiver, normal, polygon),
+      formFactor_(seen_.solidAngle_sr() > 0.0 ? pointToPolygon(receiver, normal, polygon) : 0.0F),
+      polygonNormal_(
+          glm::normalize(glm::cross(polygon[1] - polygon[0], polygon[polygon.size() - 1] - polygon[0]))),
+      height_m_(glm::dot(polygon[0] - receiver, polygonNormal_)),
+      sequence_(key),
+      luminance_(std::move(luminance)) {}
 
 template <int K>
-DirectLight<K> directFromPortals(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& receiver,
-                                 const glm::vec3& normal, DirectSamples samples, std::uint64_t key) {
+void PolygonLight<K>::sampleTo(std::uint32_t count) {
+  if (formFactor_ <= 0.0F) return;
+  for (std::uint32_t i = size(); i < count; ++i) {
+    const float u = sequence_(i, 0);
+    const float v = sequence_(i, 1);
+    const glm::vec3 direction = seen_.direction(u, v);
+    const float approach = glm::dot(direction, polygonNormal_);
+    const float weight = glm::dot(direction, normal_);
+    if (approach * height_m_ <= 0.0F || weight <= 0.0F) {
+      samples_.add(u, v, 0.0F, {}, 0.0F);
+      continue;
+    }
+    const Columns<K> light = luminance_(receiver_ + (height_m_ / approach) * direction);
+    samples_.add(u, v, weight, light, layout_.strength(light));
+  }
+}
+
+template <int K>
+DirectLight<K> PolygonLight<K>::light() const {
+  const float scale = std::numbers::pi_v<float> * formFactor_;
+  return {scale * samples_.mean(), scale * std::sqrt(samples_.variance()), size()};
+}
+
+template <int K>
+std::vector<PolygonLight<K>> portalsAt(const SolvedLight<K>& light, std::int32_t domain,
+                                       const glm::vec3& receiver, const glm::vec3& normal,
+                                       std::uint64_t key) {
   const World& world = light.world();
-  std::vector<const Portal*> facing;
+  std::vector<PolygonLight<K>> polygons;
   for (const Portal& portal : world.building.portals) {
     if (portal.inside != domain) continue;
     const glm::vec3 inward = world.normalOf(2 * portal.piece + (portal.frontIsInside ? 0U : 1U));
-    if (glm::dot(receiver - world.polygon(portal.piece)[0], inward) > 0.0F) facing.push_back(&portal);
+    const auto polygon = world.polygon(portal.piece);
+    if (glm::dot(receiver - polygon[0], inward) <= 0.0F) continue;
+    polygons.emplace_back(
+        world.layout, receiver, normal, polygon, mixKeys(key, portal.piece),
+        [&light, &portal, receiver](const glm::vec3& p) { return light.throughPortal(portal, receiver, p); });
+    if (polygons.back().formFactor() <= 0.0F) polygons.pop_back();
   }
-  return sumOf<K>(world.layout, facing.size(), samples, [&](std::size_t i, DirectSamples own) {
-    const Portal& portal = *facing[i];
-    return directFromPolygon<K>(
-        world.layout, receiver, normal, world.polygon(portal.piece), own, mixKeys(key, portal.piece),
-        [&](const glm::vec3& onPane) { return light.throughPortal(portal, receiver, onPane); });
-  });
+  return polygons;
 }
 
 template <int K>
-DirectLight<K> directFromEmitters(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& receiver,
-                                  const glm::vec3& normal, DirectSamples samples, std::uint64_t key) {
+std::vector<PolygonLight<K>> emittersAt(const SolvedLight<K>& light, std::int32_t domain,
+                                        const glm::vec3& receiver, const glm::vec3& normal,
+                                        std::uint64_t key) {
   const World& world = light.world();
   const Radiosity<K>* radiosity = light.of(domain);
-  if (radiosity == nullptr || !world.layout.electric) return {};
-  std::vector<std::uint32_t> facing;
+  std::vector<PolygonLight<K>> polygons;
+  if (radiosity == nullptr || !world.layout.electric) return polygons;
   for (const std::uint32_t i : radiosity->emitters) {
     const TreeSide& side = radiosity->tree.sides[i];
-    if (glm::dot(receiver - world.polygon(side.side / 2)[0], side.normal) > 0.0F) facing.push_back(i);
+    const auto polygon = world.polygon(side.side / 2);
+    if (glm::dot(receiver - polygon[0], side.normal) <= 0.0F) continue;
+    const Columns<K> luminance = std::numbers::inv_pi_v<float> * radiosity->exitance_lm_m2[i];
+    polygons.emplace_back(world.layout, receiver, normal, polygon, mixKeys(key, side.side),
+                          [&world, luminance, receiver](const glm::vec3& p) {
+                            return world.visibility(receiver, p) * luminance;
+                          });
+    if (polygons.back().formFactor() <= 0.0F) polygons.pop_back();
   }
-  return sumOf<K>(world.layout, facing.size(), samples, [&](std::size_t i, DirectSamples own) {
-    const std::uint32_t side = radiosity->tree.sides[facing[i]].side;
-    const Columns<K> luminance = std::numbers::inv_pi_v<float> * radiosity->exitance_lm_m2[facing[i]];
-    return directFromPolygon<K>(
-        world.layout, receiver, normal, world.polygon(side / 2), own, mixKeys(key, side),
-        [&](const glm::vec3& point) { return world.visibility(receiver, point) * luminance; });
-  });
+  return polygons;
+}
+
+template <int K>
+DirectLight<K> lightOf(std::span<PolygonLight<K>> polygons, DirectSamples samples) {
+  float all = 0.0F;
+  for (const PolygonLight<K>& polygon : polygons) all += polygon.formFactor();
+  DirectLight<K> sum;
+  for (PolygonLight<K>& polygon : polygons) {
+    const float own = polygon.formFactor();
+    const float count = samples.perFormFactor * own + samples.least * own / all;
+    polygon.sampleTo(static_cast<std::uint32_t>(std::ceil(std::max(count, samplesLeast))));
+    sum += polygon.light();
+  }
+  return sum;
 }
 
 template <int K>
@@ -214,13 +151,12 @@ DirectLight<K> directFromLamps(const World& world, std::int32_t domain, const gl
 }
 
 #define CLERESTORY_INSTANTIATE(K)                                                                            \
-  template DirectLight<K> directFromPolygon<K>(const ColumnLayout&, const glm::vec3&, const glm::vec3&,      \
-                                               std::span<const glm::vec3>, DirectSamples, std::uint64_t,     \
-                                               const Luminance<K>&);                                         \
-  template DirectLight<K> directFromPortals<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&,        \
-                                               const glm::vec3&, DirectSamples, std::uint64_t);              \
-  template DirectLight<K> directFromEmitters<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&,       \
-                                                const glm::vec3&, DirectSamples, std::uint64_t);             \
+  template class PolygonLight<K>;                                                                            \
+  template std::vector<PolygonLight<K>> portalsAt<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&,  \
+                                                     const glm::vec3&, std::uint64_t);                       \
+  template std::vector<PolygonLight<K>> emittersAt<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&, \
+                                                      const glm::vec3&, std::uint64_t);                      \
+  template DirectLight<K> lightOf<K>(std::span<PolygonLight<K>>, DirectSamples);                             \
   template DirectLight<K> directFromLamps<K>(const World&, std::int32_t, const glm::vec3&, const glm::vec3&, \
                                              DirectSamples, std::uint64_t);
 CLERESTORY_TRANSPORT_WIDTHS(CLERESTORY_INSTANTIATE)

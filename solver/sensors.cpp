@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
-#include <numeric>
 
 #include <geometry/parallel.hpp>
 #include <geometry/sampling.hpp>
@@ -16,22 +16,10 @@
 namespace clerestory {
 namespace {
 
-constexpr int mirrorDepth = 4;  // panes that a ray is followed by reflection
-constexpr std::uint32_t batches = 16;
-constexpr std::uint32_t raysOfDisc = 32;  // to the sun's disc, from a sensor
-
-/// Standard deviation of the mean of what batches sum up, of `counts` values each.
-float deviationOfMean(const std::array<float, batches>& sums, const std::array<float, batches>& counts) {
-  std::array<float, batches> means{};
-  float mean = 0.0F;
-  for (std::size_t i = 0; i < batches; ++i) {
-    means[i] = sums[i] / std::max(counts[i], 1.0F);
-    mean += means[i] / static_cast<float>(batches);
-  }
-  float variance = 0.0F;
-  for (const float own : means) variance += (own - mean) * (own - mean);
-  return std::sqrt(variance / static_cast<float>(batches * (batches - 1)));
-}
+constexpr int mirrorDepth = 4;                // panes that a ray is followed by reflection
+constexpr std::uint32_t samplesMost = 65536;  // of a polygon or the hemisphere
+constexpr int roundsMost = 8;                 // of twice as many
+constexpr std::uint32_t raysOfDisc = 32;      // to the sun's disc, from a sensor
 
 }  // namespace
 
@@ -72,43 +60,104 @@ std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32
   return sum;
 }
 
+namespace {
+
+/// Light at a point from all that is neither portal nor emitter, by cosine rays.
+template <int K>
+class HemisphereLight {
+ public:
+  HemisphereLight(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& point,
+                  const glm::vec3& normal, std::uint64_t key)
+      : light_(light),
+        isOpen_(light.world().building.domains[static_cast<std::size_t>(domain)].open),
+        domain_(domain),
+        point_(point),
+        normal_(normal),
+        sequence_(key) {}
+
+  [[nodiscard]] std::uint32_t size() const { return samples_.size(); }
+
+  /// Carries the rays on to `count` in all. Those that end on no air's side (a crack between two books) are
+  /// left out, as shooting leaves them out.
+  void sampleTo(std::uint32_t count) {
+    const World& world = light_.world();
+    for (std::uint32_t i = size(); i < count; ++i) {
+      const float u = sequence_(i, 0);
+      const float v = sequence_(i, 1);
+      const glm::vec3 direction = cosineDirection(normal_, u, v);
+      const auto seen = luminanceAlong(light_, domain_, point_, direction, false);
+      if (!seen) {
+        samples_.add(u, v, 0.0F, {}, 0.0F);
+        continue;
+      }
+      counted_ += 1.0F;
+      samples_.add(u, v, 1.0F, *seen, world.layout.strength(*seen));
+      if (isOpen_ && !world.rays.nearest(point_, direction, RayScene::Barrier::opaqueAndGlass)) sky_ += *seen;
+    }
+  }
+
+  [[nodiscard]] DirectLight<K> light() const {
+    return {std::numbers::pi_v<float> * samples_.mean(),
+            std::numbers::pi_v<float> * std::sqrt(samples_.variance()), size()};
+  }
+  /// The part of it that comes straight from the sky.
+  [[nodiscard]] Columns<K> sky_lx() const {
+    return counted_ > 0.0F ? (std::numbers::pi_v<float> / counted_) * sky_ : Columns<K>{};
+  }
+
+ private:
+  const SolvedLight<K>& light_;
+  bool isOpen_;
+  std::int32_t domain_;
+  glm::vec3 point_, normal_;
+  Sequence sequence_;
+  EvenSamples<K> samples_;
+  Columns<K> sky_;
+  float counted_ = 0.0F;
+};
+
+}  // namespace
+
+// What contributes more than its share of the error allowed is sampled twice as often, until all is within.
 template <int K>
 Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& point,
-                   const glm::vec3& normal, const GatherSettings& settings, std::uint64_t key) {
-  const World& world = light.world();
-  Gathered<K> result;
-  const DirectLight<K> fromPortals =
-      directFromPortals(light, domain, point, normal, settings.direct, mixKeys(key, 1));
-  const DirectLight<K> fromEmitters =
-      directFromEmitters(light, domain, point, normal, settings.direct, mixKeys(key, 2));
-  const DirectLight<K> fromLamps =
-      directFromLamps<K>(world, domain, point, normal, settings.direct, mixKeys(key, 4));
-  result.direct_lx = fromPortals.illuminance_lx + fromEmitters.illuminance_lx + fromLamps.illuminance_lx;
+                   const glm::vec3& normal, const GatherSettings& settings, std::uint64_t key,
+                   float known_lx) {
+  const ColumnLayout& layout = light.world().layout;
+  std::vector<PolygonLight<K>> polygons = portalsAt(light, domain, point, normal, mixKeys(key, 1));
+  std::vector<PolygonLight<K>> emitters = emittersAt(light, domain, point, normal, mixKeys(key, 2));
+  std::move(emitters.begin(), emitters.end(), std::back_inserter(polygons));
+  HemisphereLight<K> hemisphere(light, domain, point, normal, mixKeys(key, 3));
 
-  const bool isOpen = world.building.domains[static_cast<std::size_t>(domain)].open;
-  const Sequence sequence(mixKeys(key, 3));
-  // Rays that end on no air's side (a crack between two books) are left out, as shooting leaves them out.
-  Columns<K> sky_cd_m2, reflected_cd_m2;
-  std::array<float, batches> strengths{};
-  std::array<float, batches> counts{};
-  for (std::uint32_t i = 0; i < settings.rays; ++i) {
-    const glm::vec3 direction = cosineDirection(normal, sequence(i, 0), sequence(i, 1));
-    const bool meetsSky = isOpen && !world.rays.nearest(point, direction, RayScene::Barrier::opaqueAndGlass);
-    const auto seen = luminanceAlong(light, domain, point, direction, false);
-    if (!seen) continue;
-    (meetsSky ? sky_cd_m2 : reflected_cd_m2) += *seen;
-    strengths[i % batches] += world.layout.strength(*seen);
-    counts[i % batches] += 1.0F;
+  const DirectLight<K> fromLamps =
+      directFromLamps<K>(light.world(), domain, point, normal, settings.direct, mixKeys(key, 4));
+  DirectLight<K> fromPolygons = lightOf<K>(polygons, settings.direct);
+  hemisphere.sampleTo(settings.rays);
+  DirectLight<K> reflected = hemisphere.light();
+
+  const float parts = static_cast<float>(polygons.size()) + 1.0F;
+  for (int round = 0; round < roundsMost; ++round) {
+    const float all_lx = known_lx + layout.strength(fromPolygons.illuminance_lx + fromLamps.illuminance_lx +
+                                                    reflected.illuminance_lx);
+    const float allowed_lx = settings.deviationMost * all_lx;
+    if (!(std::hypot(fromPolygons.deviation_lx, reflected.deviation_lx) > allowed_lx)) break;
+    const auto carryOn = [&](auto& part, DirectLight<K> own) {
+      if (own.deviation_lx * std::sqrt(parts) > allowed_lx && part.size() < samplesMost) {
+        part.sampleTo(2 * part.size());
+        own = part.light();
+      }
+      return own;
+    };
+    fromPolygons = {};
+    for (PolygonLight<K>& polygon : polygons) fromPolygons += carryOn(polygon, polygon.light());
+    reflected = carryOn(hemisphere, reflected);
   }
-  const float count = std::accumulate(counts.begin(), counts.end(), 0.0F);
-  if (count > 0.0F) {
-    const float scale = std::numbers::pi_v<float> / count;
-    result.direct_lx += scale * sky_cd_m2;
-    result.reflected_lx = scale * reflected_cd_m2;
-    result.reflectedDeviation_lx = std::numbers::pi_v<float> * deviationOfMean(strengths, counts);
-  }
-  result.directDeviation_lx =
-      std::hypot(fromPortals.deviation_lx, fromEmitters.deviation_lx, fromLamps.deviation_lx);
+
+  Gathered<K> result;
+  result.direct_lx = fromPolygons.illuminance_lx + fromLamps.illuminance_lx + hemisphere.sky_lx();
+  result.reflected_lx = reflected.illuminance_lx - hemisphere.sky_lx();
+  result.directDeviation_lx = std::hypot(fromPolygons.deviation_lx, fromLamps.deviation_lx);
+  result.reflectedDeviation_lx = reflected.deviation_lx;
   return result;
 }
 
@@ -153,10 +202,11 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
                                     : domainAt(world, point);
     SensorValue& value = values.sensors[i];
     if (domain < 0 || light.of(domain) == nullptr) return;
-    const Gathered<K> arriving = gather(light, domain, point, normal, settings, mixKeys(0x5e5, i));
     const ColumnLayout& layout = world.layout;
     const Columns<K> sun = layout.template light<K>(
         layout.sunColumn(), glm::dvec3(sunlightByDisc(world, point, normal, raysOfDisc, mixKeys(0x5e6, i))));
+    const Gathered<K> arriving =
+        gather(light, domain, point, normal, settings, mixKeys(0x5e5, i), layout.strength(sun));
     const Columns<K> all = arriving.direct_lx + sun + arriving.reflected_lx;
     value.direct_lx = luminanceOf(layout.totalColour(arriving.direct_lx + sun));
     value.reflected_lx = luminanceOf(layout.totalColour(arriving.reflected_lx));
@@ -175,7 +225,7 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
   template std::optional<Columns<K>> luminanceAlong<K>(const SolvedLight<K>&, std::int32_t,               \
                                                        const glm::vec3&, const glm::vec3&, bool);         \
   template Gathered<K> gather<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&, const glm::vec3&, \
-                                 const GatherSettings&, std::uint64_t);                                   \
+                                 const GatherSettings&, std::uint64_t, float);                            \
   template GridValues senseGrid<K>(const SolvedLight<K>&, const SensorGrid&, const GatherSettings&, double);
 CLERESTORY_STUDY_WIDTHS(CLERESTORY_INSTANTIATE)
 

@@ -2,6 +2,7 @@
 // Final gather: what arrives at a point, from portals and emitters directly and from everything else by rays.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include <solver/solution.hpp>
@@ -11,9 +12,12 @@
 
 namespace clerestory {
 
+/// How light at a point is sampled: at first so, then more until its standard deviation is at most
+/// `deviationMost` of it.
 struct GatherSettings {
-  DirectSamples direct{512.0F, 24.0F};  ///< of each portal and emitter
+  DirectSamples direct{512.0F, 24.0F};  ///< of portals and emitters
   std::uint32_t rays = 1024;            ///< over the hemisphere
+  float deviationMost = std::numeric_limits<float>::infinity();
 };
 
 /// Light that arrives at a point.
@@ -25,10 +29,12 @@ struct Gathered {
 };
 
 /// Light arriving at `point` (local coordinates) with unit `normal` in the air of `domain`, without the sun's
-/// beam: that is as sharp as rays to its disc make it (sunlightByDisc).
+/// beam: that is as sharp as rays to its disc make it (sunlightByDisc). `known_lx` of that beam or the like
+/// counts as light that is sure when the error allowed is a share of all. `key` seeds the rays.
 template <int K>
 Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& point,
-                   const glm::vec3& normal, const GatherSettings& settings, std::uint64_t key);
+                   const glm::vec3& normal, const GatherSettings& settings, std::uint64_t key,
+                   float known_lx = 0.0F);
 
 /// Luminance along a ray in the air of a domain, glass seen through and mirrored in. [cd/m²]
 /// withDirect: surfaces' own emission and what is seen through portals belong to it. Nothing where the ray

@@ -32,10 +32,9 @@ Tuning tuningFor(double accuracy, const SolveOptions& options) {
   Tuning tuning;
   tuning.transport = transportFor(accuracy);
   tuning.transport.memoryBytes = options.memoryBytes;
-  tuning.sensors.direct = {static_cast<float>(256.0 * finer), static_cast<float>(128.0 * finer),
-                           static_cast<float>(0.35 * accuracy)};
-  tuning.sensors.rays =
-      static_cast<std::uint32_t>(std::clamp(1024.0 * finer * std::sqrt(finer), 256.0, 65536.0));
+  tuning.sensors.direct = {static_cast<float>(32.0 * finer), static_cast<float>(32.0 * finer)};
+  tuning.sensors.rays = static_cast<std::uint32_t>(std::clamp(128.0 * finer, 32.0, 4096.0));
+  tuning.sensors.deviationMost = static_cast<float>(0.3 * accuracy);
   tuning.views = {{96.0F, 2.0F}, 64};
   tuning.solverError = 0.3 * accuracy;
   return tuning;

@@ -25,6 +25,14 @@ ColumnLayout grey() {
   return layout;
 }
 
+DirectLight<1> sampled(const glm::vec3& point, const glm::vec3& normal, std::span<const glm::vec3> polygon,
+                       float samples, std::uint64_t key, Luminance<1> luminance) {
+  const ColumnLayout layout = grey();
+  PolygonLight<1> light(layout, point, normal, polygon, key, std::move(luminance));
+  light.sampleTo(static_cast<std::uint32_t>(samples));
+  return light.light();
+}
+
 /// Receivers before the window, with the window above, across and low over their horizon.
 template <class Check>
 void forReceivers(const Check& check) {
@@ -37,11 +45,11 @@ void forReceivers(const Check& check) {
 }
 
 // Even light is its luminance times pi times the form factor, whatever the samples, and has no spread.
-TEST(DirectFromPolygon, EvenLightIsExactAndSure) {
+TEST(PolygonLight, EvenLightIsExactAndSure) {
   forReceivers([](const glm::vec3& point, const glm::vec3& normal, std::uint32_t i) {
     for (const float samples : {1.0F, 2.0F, 37.0F, 500.0F}) {
-      const DirectLight<1> light = directFromPolygon<1>(grey(), point, normal, window, {0.0F, samples}, i,
-                                                        [](const glm::vec3&) { return Columns<1>{{3.0F}}; });
+      const DirectLight<1> light =
+          sampled(point, normal, window, samples, i, [](const glm::vec3&) { return Columns<1>{{3.0F}}; });
       const float exact = 3.0F * std::numbers::pi_v<float> * pointToPolygon(point, normal, window);
       EXPECT_NEAR(light.illuminance_lx[0], exact, 1e-5F + 1e-4F * exact);
       ASSERT_TRUE(std::isfinite(light.deviation_lx));
@@ -51,7 +59,7 @@ TEST(DirectFromPolygon, EvenLightIsExactAndSure) {
 }
 
 // Half of the window bright: the exact light is that of a smaller window.
-TEST(DirectFromPolygon, HalfAWindowIsASmallerWindow) {
+TEST(PolygonLight, HalfAWindowIsASmallerWindow) {
   const std::array<glm::vec3, 4> half{
       {{-1.0F, 2.0F, 0.9F}, {0.0F, 2.0F, 0.9F}, {0.0F, 2.0F, 2.4F}, {-1.0F, 2.0F, 2.4F}}};
   double bias = 0.0;
@@ -60,9 +68,9 @@ TEST(DirectFromPolygon, HalfAWindowIsASmallerWindow) {
   forReceivers([&](const glm::vec3& point, const glm::vec3& normal, std::uint32_t i) {
     const float whole = pointToPolygon(point, normal, window);
     if (whole < 1e-3F) return;
-    const DirectLight<1> light = directFromPolygon<1>(
-        grey(), point, normal, window, {0.0F, 256.0F}, i,
-        [](const glm::vec3& onPane) { return Columns<1>{{onPane.x < 0.0F ? 1.0F : 0.0F}}; });
+    const DirectLight<1> light = sampled(point, normal, window, 256.0F, i, [](const glm::vec3& onPane) {
+      return Columns<1>{{onPane.x < 0.0F ? 1.0F : 0.0F}};
+    });
     const float exact = std::numbers::pi_v<float> * pointToPolygon(point, normal, half);
     const double error = static_cast<double>(light.illuminance_lx[0] - exact) /
                          (std::numbers::pi * static_cast<double>(whole));
@@ -77,27 +85,27 @@ TEST(DirectFromPolygon, HalfAWindowIsASmallerWindow) {
 }
 
 // A small lamp far away: all samples are alike but for rounding, which must not end below a root.
-TEST(DirectFromPolygon, DeviationOfAFarLampIsANumber) {
+TEST(PolygonLight, DeviationOfAFarLampIsANumber) {
   constexpr std::array<glm::vec3, 4> lamp{
       {{0.0F, 9.0F, 2.0F}, {0.05F, 9.0F, 2.0F}, {0.05F, 9.0F, 2.05F}, {0.0F, 9.0F, 2.05F}}};
   forReceivers([&](const glm::vec3& point, const glm::vec3& normal, std::uint32_t i) {
     for (const float samples : {2.0F, 3.0F, 8.0F, 9.0F, 18.0F}) {
-      const DirectLight<1> light = directFromPolygon<1>(
-          grey(), point, normal, lamp, {0.0F, samples}, i,
-          [&](const glm::vec3&) { return Columns<1>{{1234.567F + 0.001F * static_cast<float>(i)}}; });
+      const DirectLight<1> light = sampled(point, normal, lamp, samples, i, [&](const glm::vec3&) {
+        return Columns<1>{{1234.567F + 0.001F * static_cast<float>(i)}};
+      });
       ASSERT_TRUE(std::isfinite(light.deviation_lx)) << samples << " samples";
     }
   });
 }
 
 // Light in two even halves leaves cells whose samples are all alike.
-TEST(DirectFromPolygon, DeviationIsANumber) {
+TEST(PolygonLight, DeviationIsANumber) {
   forReceivers([](const glm::vec3& point, const glm::vec3& normal, std::uint32_t i) {
     for (const float samples : {1.0F, 2.0F, 3.0F, 8.0F, 9.0F, 12.0F, 18.0F, 33.0F}) {
       for (const float edge_m : {1.0F, 1.6F, 2.2F}) {
-        const DirectLight<1> light = directFromPolygon<1>(
-            grey(), point, normal, window, {0.0F, samples}, i,
-            [&](const glm::vec3& onPane) { return Columns<1>{{onPane.z < edge_m ? 600.0F : 2000.0F}}; });
+        const DirectLight<1> light = sampled(point, normal, window, samples, i, [&](const glm::vec3& onPane) {
+          return Columns<1>{{onPane.z < edge_m ? 600.0F : 2000.0F}};
+        });
         ASSERT_TRUE(std::isfinite(light.illuminance_lx[0]));
         ASSERT_TRUE(std::isfinite(light.deviation_lx)) << samples << " samples";
       }
