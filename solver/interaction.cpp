@@ -23,7 +23,8 @@ constexpr float linearDeviation = 0.29F;  // 1 / sqrt(12): rms of a linear ramp,
 constexpr float rayNoise = 2.0F;  // of what rays bring together, in thresholds of a link: noise averages
 constexpr float raysInsteadOfLinks = 32.0F;  // up to so many, links are not even looked for
 constexpr float weakRaysLeast = 16.0F, weakRaysMost = 256.0F;
-constexpr float clusterTakes = 5.0F;  // thresholds that a cluster takes as one mean
+constexpr float darkerBySender = 0.2F;  // thresholds that a sender's own shadow may take off
+constexpr float clusterTakes = 5.0F;    // thresholds that a cluster takes as one mean
 
 constexpr float farApart = 0.1F;  // (radii) / distance below which centres stand for elements
 
@@ -380,7 +381,8 @@ Verdict Interactions<K>::judgeSeen(const Receiver& receiver, const Candidate& ca
   const float arriving = link.formFactor * receiver.weight;
   const float power = unshot_.strength[sender] * arriving;
   const float receiverError = linearDeviation * power * visible * link.spreadOverReceiver();
-  const float shadowError = 0.5F * power * std::sqrt(visible * (1.0F - visible));
+  const float spreadOfShadow = 0.5F * std::sqrt(visible * (1.0F - visible));
+  const float shadowError = power * spreadOfShadow;
   float senderError = 0.0F;
   if (canRefineSender) {
     const float distance_m = glm::length(tree_.centre[sender] - receiver.centre);
@@ -392,6 +394,10 @@ Verdict Interactions<K>::judgeSeen(const Receiver& receiver, const Candidate& ca
   if (receiverError > threshold_lm && canRefineReceiver) return Verdict::refineReceiver;
   if (senderError > threshold_lm) return Verdict::refineSender;
   if (shadowError > threshold_lm) return refineLarger(receiver, sender);
+  // Of a sender half in shadow the lit parts are mostly those that are seen: their mean errs the same way for
+  // all receivers.
+  if (canRefineSender && uneven(sender) * arriving * spreadOfShadow > darkerBySender * threshold_lm)
+    return Verdict::refineSender;
   return Verdict::accept;
 }
 
@@ -535,9 +541,7 @@ Verdict Interactions<K>::receiveFromSky(const Receiver& receiver, Incoming<K>& i
     const glm::vec3 from = pointOnPolygon<glm::vec3>(receiver.corners, sequence(i, 0), sequence(i, 1)) +
                            rayOffset_m * receiver.normal;
     const glm::vec3 direction = cosineDirection(receiver.normal, sequence(i, 2), sequence(i, 3));
-    const auto hit = world_.rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
-    if (!hit)
-      sum += world_.innerTransmittance(from, from + 1e4F * direction) * light_.skyLuminance(direction);
+    sum += light_.skyAlong(from, direction);
   }
   tally.rays += count;
   incoming.own.irradiance_lx += (std::numbers::pi_v<float> / static_cast<float>(count)) * sum;

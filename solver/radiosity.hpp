@@ -83,6 +83,11 @@ class SolvedLight {
   /// Luminance seen outdoors along a ray that starts outside or on the outer face of a pane. [cd/m²]
   [[nodiscard]] Columns<K> outsideLuminance(const glm::vec3& from, const glm::vec3& direction) const;
 
+  /// What a ray outdoors sees of sky and ground, straight or over panes that mirror it. [cd/m²]
+  [[nodiscard]] Columns<K> skyAlong(const glm::vec3& from, const glm::vec3& direction) const {
+    return alongOutdoors(from, direction, false);
+  }
+
   /// Finds how brightly scattering panes shine inwards; to be called when the outside is solved.
   void lightDiffusingPanes();
   /// Luminance that a pane shows inside at a point of it, to one who looks along `direction`. [cd/m²]
@@ -102,6 +107,8 @@ class SolvedLight {
   const World& world() const { return world_; }
 
  private:
+  [[nodiscard]] Columns<K> alongOutdoors(glm::vec3 from, glm::vec3 direction, bool withSurfaces) const;
+
   const World& world_;
   std::vector<NodeIndex> rootOfSide_;
   std::vector<Columns<K>> diffused_cd_m2_;  // #pieces, of scattering panes

@@ -16,7 +16,6 @@
 namespace clerestory {
 namespace {
 
-constexpr int mirrorDepth = 4;                // panes that a ray is followed by reflection
 constexpr std::uint32_t samplesMost = 65536;  // of a polygon or the hemisphere
 constexpr int roundsMost = 8;                 // of twice as many
 constexpr std::uint32_t raysOfDisc = 32;      // to the sun's disc, from a sensor

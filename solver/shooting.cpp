@@ -70,7 +70,8 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
       if (!tree.isLeaf(node)) continue;
       const Columns<K>& next = transport.received()[node].irradiance_lx;
       sum[node] += next;
-      unshot[node] = solved.reflected(node, next);
+      const bool isSent = step == 1 && solved.isMirror(node);
+      unshot[node] = isSent ? Columns<K>{} : solved.reflected(node, next);
     }
     unshotPower_lm = transport.powerOf(unshot);
     const float after_lm = world.layout.strength(unshotPower_lm);

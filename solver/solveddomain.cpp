@@ -32,10 +32,18 @@ std::vector<Columns<K>> SolvedDomain<K>::emission() const {
   for (NodeIndex node = 0; node < tree.size(); ++node) {
     if (tree.isCluster(node)) continue;
     const std::uint32_t side = tree.treeSide[node];
-    emission[node] = radiosity.exitance_lm_m2[side] +
-                     radiosity.reflectance[side] * radiosity.sunlightOf(world_.layout, node);
+    emission[node] = radiosity.exitance_lm_m2[side];
+    if (!isMirror(node))
+      emission[node] += radiosity.reflectance[side] * radiosity.sunlightOf(world_.layout, node);
   }
   return emission;
+}
+
+template <int K>
+bool SolvedDomain<K>::isMirror(NodeIndex leaf) const {
+  const Hierarchy& tree = radiosity.tree;
+  return world_.building.domains[static_cast<std::size_t>(domain)].open &&
+         world_.isMirror(tree.sides[tree.treeSide[leaf]].side / 2);
 }
 
 template <int K>

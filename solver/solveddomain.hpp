@@ -39,6 +39,10 @@ struct SolvedDomain {
   /// Mean reflectance of all sides, glass as it reflects inwards.
   [[nodiscard]] Columns<K> meanReflectance() const;
 
+  /// Whether a leaf is a clear pane outdoors: what it mirrors of sky and sun has reached its receivers along
+  /// the mirrored ray, and is not to be sent out evenly as well.
+  [[nodiscard]] bool isMirror(NodeIndex leaf) const;
+
   void addStatistics(const Tally& tally, std::size_t cached, float unshotPower_lm, double seconds);
   /// Adds up what was absorbed and what left through glass.
   void closeBalance();

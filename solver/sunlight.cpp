@@ -226,15 +226,20 @@ Sunlight sunlightOutdoors(const World& world, const Hierarchy& tree) {
   light.mayReach.resize(tree.size());
   const glm::vec3& towards = world.sun->towards;
   for (NodeIndex node = 0; node < tree.size(); ++node) {
-    if (tree.isCluster(node) || !tree.isLeaf(node) || glm::dot(tree.normal(node), towards) <= 0.0F) continue;
-    light.mayReach[node] = 1;
+    if (tree.isCluster(node) || !tree.isLeaf(node)) continue;
     const glm::vec3& normal = tree.normal(node);
+    const auto faces = [&](const glm::vec3& way) { return glm::dot(normal, way) > 0.0F; };
+    const std::vector<glm::vec3>& images = world.sun->towardsImages;
+    if (!faces(towards) && std::none_of(images.begin(), images.end(), faces)) continue;
+    light.mayReach[node] = 1;
     const std::uint32_t count = tree.weight[node] > 0.0F ? samplesOutdoors : samplesUnasked;
     const Sequence sequence(mixKeys(tree.key[node], 0x50a));
     for (std::uint32_t i = 0; i < count; ++i) {
       const glm::vec3 point = pointOnPolygon<glm::vec3>(tree.polygon(node), sequence(i, 0), sequence(i, 1)) +
                               rayOffset_m * normal;
-      light.illuminance_lx[node] += sunlightAt(world, point, normal) / static_cast<float>(count);
+      light.illuminance_lx[node] +=
+          (sunlightAt(world, point, normal) + mirroredSunlightAt(world, point, normal)) /
+          static_cast<float>(count);
     }
   }
   return light;
@@ -247,6 +252,23 @@ glm::vec3 sunlightAt(const World& world, const glm::vec3& point, const glm::vec3
   const float cosine = glm::dot(normal, world.sun->towards);
   if (cosine <= 0.0F) return glm::vec3(0.0F);
   return world.sun->normal_lx * cosine * passedAlong(world, point, world.sun->towards).share;
+}
+
+glm::vec3 mirroredSunlightAt(const World& world, const glm::vec3& point, const glm::vec3& normal) {
+  glm::vec3 sum(0.0F);
+  if (!world.sun) return sum;
+  for (const glm::vec3& image : world.sun->towardsImages) {
+    const float cosine = glm::dot(normal, image);
+    if (cosine <= 0.0F) continue;
+    const auto hit = world.rays.nearest(point, image, RayScene::Barrier::opaqueAndGlass);
+    if (!hit || !world.isMirror(hit.piece)) continue;
+    const glm::vec3 pane = world.normalOf(hit.side());
+    if (glm::dot(glm::reflect(world.sun->towards, pane), image) < sameImage) continue;
+    const glm::vec3 onPane = point + hit.distance_m * image + rayOffset_m * pane;
+    sum += cosine * world.glassOf(hit.piece).reflectance(std::abs(glm::dot(image, pane))) *
+           passedAlong(world, onPane, world.sun->towards).share;
+  }
+  return world.sun->normal_lx * sum;
 }
 
 glm::vec3 sunlightByDisc(const World& world, const glm::vec3& point, const glm::vec3& normal,

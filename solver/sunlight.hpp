@@ -15,6 +15,9 @@ namespace clerestory {
 glm::vec3 sunlightAt(const World& world, const glm::vec3& point, const glm::vec3& normal);
 
 /// The same by the whole disc: `rays` directions over it, seeded by `key`. [lx]
+/// The same by its images in panes, for points outdoors. [lx]
+glm::vec3 mirroredSunlightAt(const World& world, const glm::vec3& point, const glm::vec3& normal);
+
 glm::vec3 sunlightByDisc(const World& world, const glm::vec3& point, const glm::vec3& normal,
                          std::uint32_t rays, std::uint64_t key);
 

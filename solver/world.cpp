@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -41,6 +42,34 @@ World::World(const Building& buildingIn, const Study& study, const Daylight& day
       corners_.push_back(local(pieces().points[corner]));
     firstCorner_.push_back(corners_.size());
   }
+  if (sun) sun->towardsImages = imagesOf(sun->towards);
+}
+
+// Panes that look the same way show it in the same place; of many ways (a dome) the largest ones.
+std::vector<glm::vec3> World::imagesOf(const glm::vec3& towardsSun) const {
+  constexpr std::size_t most = 8;
+  std::vector<std::pair<double, glm::vec3>> images;
+  for (const Portal& portal : building.portals) {
+    const glm::vec3 outward = normalOf(2 * portal.piece + (portal.frontIsInside ? 1U : 0U));
+    if (glm::dot(outward, towardsSun) <= 0.0F || !isMirror(portal.piece)) continue;
+    const glm::vec3 image = glm::reflect(towardsSun, outward);
+    const auto known = std::find_if(images.begin(), images.end(), [&](const auto& other) {
+      return glm::dot(other.second, image) > sameImage;
+    });
+    const double area_m2 = pieces().area_m2[portal.piece];
+    if (known == images.end()) {
+      images.emplace_back(area_m2, image);
+    } else {
+      known->first += area_m2;
+    }
+  }
+  std::stable_sort(images.begin(), images.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<glm::vec3> ways;
+  for (const auto& [area_m2, image] : images) {
+    if (ways.size() < most) ways.push_back(image);
+  }
+  return ways;
 }
 
 glm::dvec3 World::tintOf(std::uint32_t piece) const {

@@ -16,11 +16,15 @@
 
 namespace clerestory {
 
+inline constexpr int mirrorDepth = 4;         ///< panes that a ray is followed by reflection
+inline constexpr float sameImage = 0.99999F;  ///< cosine between directions to images that are one
+
 /// The sun's beam.
 struct SunBeam {
-  glm::vec3 towards;          ///< unit vector to the middle of its disc
-  float normal_lx;            ///< illuminance square to the beam
-  double ground_cd_m2 = 0.0;  ///< what the beam adds to the luminance of the uniform ground
+  glm::vec3 towards;                       ///< unit vector to the middle of its disc
+  float normal_lx;                         ///< illuminance square to the beam
+  double ground_cd_m2 = 0.0;               ///< what the beam adds to the luminance of the uniform ground
+  std::vector<glm::vec3> towardsImages{};  ///< unit vectors to where panes show it to the outside
 };
 
 class World {
@@ -47,6 +51,10 @@ class World {
   [[nodiscard]] glm::vec3 normalOf(std::uint32_t side) const {
     return glm::vec3(side % 2 == 0 ? pieces().normal[side / 2] : -pieces().normal[side / 2]);
   }
+  /// Whether a piece is clear glass, which mirrors by its angle.
+  [[nodiscard]] bool isMirror(std::uint32_t piece) const {
+    return materialOf(piece).glazing && !materialOf(piece).diffusing;
+  }
   /// Glass of a glazing piece, and the factor on its transmittance by dirt and undrawn frames.
   [[nodiscard]] const Glass& glassOf(std::uint32_t piece) const { return *glass_[pieces().material[piece]]; }
   /// An opening has neither.
@@ -67,6 +75,7 @@ class World {
                   std::span<float> visible) const;
 
  private:
+  [[nodiscard]] std::vector<glm::vec3> imagesOf(const glm::vec3& towardsSun) const;
   World(const Building& building, const Study& study, const Daylight& daylight);
 
   std::vector<std::optional<Glass>> glass_;  // #materials

@@ -58,6 +58,13 @@ const std::string clearSky =
     "[sky]\ntype = \"cie-12\"\ndiffuse_horizontal_lx = 7761\ndirect_normal_lx = 69162\n"
     "sun = { altitude = 35.836, azimuth = 141.922 }\n";
 
+/// What is promised of an accuracy: a p95 within it, beyond twice the reference's standard error, and a bias
+/// of half of it at fine and two fifths at standard.
+void expectWithin(const GridErrors& errors, double accuracy, double standardError) {
+  EXPECT_LE(errors.p95, accuracy + 2.0 * standardError);
+  EXPECT_LE(std::abs(errors.bias), accuracy <= 0.02 ? 0.01 : 0.02);
+}
+
 // The accuracy asked for is a p95. The paths' standard deviation, 0.4 %, adds to it as independent errors do:
 // 2 sqrt(p95² / 4 + 0.4²) %.
 TEST(Reference, EmptyOfficeKeepsToTheAccuracyAskedFor) {
@@ -69,12 +76,17 @@ TEST(Reference, EmptyOfficeKeepsToTheAccuracyAskedFor) {
   EXPECT_LE(std::abs(fine.bias), 0.005);
 }
 
-TEST(Reference, FurnishedOfficeKeepsToDraftAndStandard) {
+TEST(Reference, FurnishedOfficeKeepsToTheAccuracyAskedFor) {
   const std::string table = "overcast_paths";
   EXPECT_LE(errorsOfRoom("furnished", table, "draft").p95, 0.101);
-  const GridErrors standard = errorsOfRoom("furnished", table, "standard");
-  EXPECT_LE(standard.p95, 0.0515);
-  EXPECT_LE(std::abs(standard.bias), 0.015);
+  expectWithin(errorsOfRoom("furnished", table, "standard"), 0.05, 0.006);
+  expectWithin(errorsOfRoom("furnished", table, "fine"), 0.02, 0.006);
+}
+
+// Twelve furnished offices, every sixth of their sensors. How it stands at fine and with sun is in
+// docs/validation.md; it would take too long here.
+TEST(Reference, FloorOfOfficesKeepsToStandard) {
+  expectWithin(errorsOfRoom("floor", "overcast_paths", "standard"), 0.05, 0.005);
 }
 
 // Radiance's tables are up to 3 % off the paths at the back of the room (docs/validation.md).
@@ -86,18 +98,12 @@ TEST(Reference, OfficesAgreeWithRadiance) {
   }
 }
 
-// 21 March, 10 o'clock, with sun. The reference's standard error is 0.4 %. At the standard accuracy the bias
-// is asked to stay within 2 %, the 95th percentile within 5 % and twice that standard error.
-TEST(Reference, EmptyOfficeWithSun) {
-  const GridErrors errors = errorsOfRoom("refoffice", "clear", "standard", clearSky);
-  EXPECT_LE(std::abs(errors.bias), 0.02);
-  EXPECT_LE(errors.p95, 0.058);
-}
-
-TEST(Reference, FurnishedOfficeWithSun) {
-  const GridErrors errors = errorsOfRoom("furnished", "clear", "standard", clearSky);
-  EXPECT_LE(std::abs(errors.bias), 0.02);
-  EXPECT_LE(errors.p95, 0.058);
+// 21 March, 10 o'clock, with sun; every second sensor.
+TEST(Reference, OfficesWithSun) {
+  for (const std::string name : {"refoffice", "furnished"}) {
+    expectWithin(errorsOfRoom(name, "clear_paths", "standard", clearSky), 0.05, 0.005);
+  }
+  expectWithin(errorsOfRoom("furnished", "clear_paths", "fine", clearSky), 0.02, 0.005);
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reference illuminances of a daylit room by plain path tracing, straight from its OBJ file. Nothing of
+// Reference illuminances of a daylit building by plain path tracing, straight from its OBJ file. Nothing of
 // Clerestory is in it but Embree's triangles, so that an error of the program's is not one of its own.
 //
 // A path leaves a sensor, is scattered by Lambert's law at every polygon, passes or is mirrored by glass with
-// Fresnel's probabilities, and ends where it meets the sky or the ground. Half of its directions are drawn by
-// the cosine, half towards a pane, weighted by the density of both together.
+// Fresnel's probabilities, and ends where it meets the sky or the ground. At every corner a branch is sent to
+// a pane as well, and what both find there is weighted by the density of both together. Where there is sun, a
+// ray to a point of its disc leaves every corner, and another to its image in the panes.
 #include <embree3/rtcore.h>
 
 #include <algorithm>
@@ -83,12 +84,78 @@ struct Sheet {
   }
 };
 
-/// Traditional CIE overcast sky of 10,000 lx over an even ground of reflectance 0.2. [cd/m²]
-double luminance(Vector direction) {
-  constexpr double horizontal_lx = 10000.0;
-  if (direction.z < 0.0) return 0.2 * horizontal_lx / pi;
-  return horizontal_lx * 9.0 / (7.0 * pi) * (1.0 + 2.0 * direction.z) / 3.0;
-}
+/// Sky over an even ground of reflectance 0.2, and the sun.
+struct Sky {
+  double horizontal_lx, beam_lx;  ///< of the sky alone; normal to the beam
+  Vector towardsSun;
+  bool isClear;
+  double scale = 1.0;
+  static constexpr double groundReflectance = 0.2, sunRadius = 0.265 / 180.0 * pi;
+
+  /// The traditional CIE overcast sky of 10,000 lx.
+  static Sky overcast() { return Sky{10000.0, 0.0, {0.0, 0.0, 1.0}, false}.scaled(); }
+
+  /// CIE S 011 type 12 with the sun of 21 March, 10 o'clock, as the tables by Radiance have it.
+  static Sky clear() {
+    const double altitude = 35.836 / 180.0 * pi, azimuth = 141.922 / 180.0 * pi;
+    const Vector sun{std::cos(altitude) * std::sin(azimuth), std::cos(altitude) * std::cos(azimuth),
+                     std::sin(altitude)};
+    return Sky{7761.0, 69162.0, sun, true}.scaled();
+  }
+
+  /// Luminance of sky and ground. [cd/m²]
+  [[nodiscard]] double luminance(Vector way) const {
+    if (way.z < 0.0) return groundReflectance * (horizontal_lx + beam_lx * std::max(towardsSun.z, 0.0)) / pi;
+    return scale * pattern(way);
+  }
+
+  /// A direction to the sun's disc.
+  template <class Even, class Random>
+  Vector ontoSun(Even& even, Random& random) const {
+    const double away = std::tan(sunRadius) * std::sqrt(even(random));
+    const double angle = 2.0 * pi * even(random);
+    const Vector side = unit(cross({0.0, 0.0, 1.0}, towardsSun));
+    return unit(towardsSun + away * std::cos(angle) * side +
+                away * std::sin(angle) * cross(towardsSun, side));
+  }
+
+ private:
+  [[nodiscard]] double pattern(Vector way) const {
+    if (!isClear) return 1.0 + 2.0 * way.z;
+    const double between = std::acos(std::clamp(dot(way, towardsSun), -1.0, 1.0));
+    const double gradation = 1.0 - std::exp(-0.32 / std::max(way.z, 1e-6));
+    return gradation * (1.0 + 10.0 * (std::exp(-3.0 * between) - std::exp(-1.5 * pi)) +
+                        0.45 * std::cos(between) * std::cos(between));
+  }
+
+  /// Set to its horizontal illuminance by a sum over squared sines of the altitude and over azimuths.
+  [[nodiscard]] Sky scaled() const {
+    constexpr int rows = 1000, columns = 2000;
+    double sum = 0.0;
+    for (int i = 0; i < rows; ++i) {
+      for (int j = 0; j < columns; ++j) {
+        const double high = std::sqrt((i + 0.5) / rows), flat = std::sqrt(1.0 - high * high);
+        const double azimuth = 2.0 * pi * (j + 0.5) / columns;
+        sum += pattern({flat * std::sin(azimuth), flat * std::cos(azimuth), high});
+      }
+    }
+    Sky sky = *this;
+    sky.scale = horizontal_lx / (pi * sum / (rows * columns));
+    return sky;
+  }
+};
+
+/// What a path brings: all of it; what came straight through the panes, by way of the outside at most; and
+/// what had been in a room before, left it by the glass and came back.
+struct Brought {
+  double all_lx = 0.0, straight_lx = 0.0, returned_lx = 0.0;
+
+  void add(double light_lx, int corners, int exits) {
+    all_lx += light_lx;
+    if (corners == 0) straight_lx += light_lx;
+    if (exits > 1) returned_lx += light_lx;
+  }
+};
 
 std::map<std::string, Material> readMaterials(const std::string& file) {
   std::map<std::string, Material> materials;
@@ -139,8 +206,11 @@ std::vector<Triangle> readObj(const std::string& file) {
 
 class Room {
  public:
-  explicit Room(std::vector<Triangle> triangles)
-      : triangles_(std::move(triangles)), device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+  Room(std::vector<Triangle> triangles, const Sky& sky)
+      : triangles_(std::move(triangles)),
+        sky_(sky),
+        device_(rtcNewDevice(nullptr)),
+        scene_(rtcNewScene(device_)) {
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* corners = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -154,8 +224,8 @@ class Room {
       }
       for (std::size_t k = 0; k < 3; ++k) *indices++ = static_cast<std::uint32_t>(3 * i + k);
       if (!own.material.isGlass()) continue;
-      panes_.push_back(i);
-      paneArea_ += 0.5 * length(cross(own.b - own.a, own.c - own.a));
+      panes_.push_back(
+          {i, 0.5 * length(cross(own.b - own.a, own.c - own.a)), (1.0 / 3.0) * (own.a + own.b + own.c)});
       sheet_ = Sheet::of(own.material.transmittance);
     }
     rtcCommitGeometry(geometry);
@@ -170,80 +240,184 @@ class Room {
   Room(const Room&) = delete;
   Room& operator=(const Room&) = delete;
 
-  /// Illuminance by one path. [lx]
+  /// Illuminance by one path.
   template <class Random>
-  [[nodiscard]] double path(Vector at, Vector normal, Random& random) const {
+  [[nodiscard]] Brought path(Vector at, Vector normal, Random& random) const {
     std::uniform_real_distribution<double> even(0.0, 1.0);
-    double weight = pi;
-    Vector way = scattered(at, normal, weight, even, random);
-    while (weight > 0.0) {
-      double distance_m = 0.0;
-      const Triangle* met = nearest(at, way, distance_m);
-      if (met == nullptr) return weight * luminance(way);
-      at = at + distance_m * way;
-      const double cosine = dot(way, met->normal);
-      if (met->material.isGlass()) {
-        const auto [passes, returns] = sheet_.at(std::abs(cosine));
-        weight *= passes + returns;
-        if (even(random) * (passes + returns) > passes) way = way - 2.0 * cosine * met->normal;
-        continue;
-      }
-      if (even(random) >= met->material.reflectance) return 0.0;
-      way = scattered(at, (cosine < 0.0 ? 1.0 : -1.0) * met->normal, weight, even, random);
-    }
-    return 0.0;
+    Brought sum;
+    if (sky_.beam_lx > 0.0) sum.add(fromSun(at, normal, even, random), 0, 1);
+    Way way{at, normal, pi};
+    branchToPane(way, sum, even, random);
+    scatter(way, even, random);
+    follow(way, sum, even, random);
+    return sum;
   }
 
  private:
+  struct Pane {
+    std::size_t triangle;
+    double area_m2;
+    Vector centre;
+  };
+
+  /// A path on its way.
+  struct Way {
+    Vector at, direction;  ///< the surface's normal where it is still to be scattered
+    double weight;         ///< of what it meets: lx for each cd/m²
+    double ofPane = 1.0;   ///< of a pane, if that is what it meets first: the branches' part is taken off
+    int corners = 0;       ///< in rooms
+    int exits = 0;         ///< from rooms, by glass
+    bool isIndoors = true;
+  };
+
   template <class Even, class Random>
-  Vector scattered(Vector at, Vector normal, double& weight, Even& even, Random& random) const {
-    Vector way;
-    if (even(random) < 0.5) {
-      const double squared = even(random);
-      const double angle = 2.0 * pi * even(random);
-      const Vector side =
-          unit(cross(std::abs(normal.z) < 0.5 ? Vector{0.0, 0.0, 1.0} : Vector{1.0, 0.0, 0.0}, normal));
-      way = std::sqrt(squared) * std::cos(angle) * side +
-            std::sqrt(squared) * std::sin(angle) * cross(normal, side) + std::sqrt(1.0 - squared) * normal;
-    } else {
-      way = unit(onPane(even, random) - at);
+  void follow(Way way, Brought& sum, Even& even, Random& random) const {
+    for (;;) {
+      double distance_m = 0.0;
+      const Triangle* met = nearest(way.at, way.direction, distance_m);
+      if (met == nullptr) {
+        sum.add(way.weight * sky_.luminance(way.direction), way.corners, way.exits);
+        return;
+      }
+      way.at = way.at + distance_m * way.direction;
+      const double cosine = dot(way.direction, met->normal);
+      if (met->material.isGlass()) {
+        const auto [passes, returns] = sheet_.at(std::abs(cosine));
+        way.weight *= (passes + returns) * way.ofPane;
+        way.ofPane = 1.0;
+        if (even(random) * (passes + returns) > passes) {
+          way.direction = way.direction - 2.0 * cosine * met->normal;
+        } else {
+          way.exits += way.isIndoors ? 1 : 0;
+          way.isIndoors = !way.isIndoors;
+        }
+        continue;
+      }
+      way.direction = (cosine < 0.0 ? 1.0 : -1.0) * met->normal;
+      way.corners += way.isIndoors ? 1 : 0;
+      if (sky_.beam_lx > 0.0) {
+        const double sun_lx = fromSun(way.at, way.direction, even, random);
+        sum.add(way.weight * met->material.reflectance * sun_lx / pi, way.corners,
+                way.exits + (way.isIndoors ? 1 : 0));
+      }
+      if (even(random) >= met->material.reflectance) return;
+      branchToPane(way, sum, even, random);
+      scatter(way, even, random);
     }
-    const double cosine = dot(way, normal);
-    if (cosine <= 0.0) weight = 0.0;
-    const double density = 0.5 * cosine / pi + 0.5 * paneDensity(at, way);
-    weight *= cosine / pi / density;
-    return way;
+  }
+
+  /// Follows a branch to a pane, if nothing is before it.
+  template <class Even, class Random>
+  void branchToPane(Way way, Brought& sum, Even& even, Random& random) const {
+    const Vector normal = way.direction;
+    way.direction = unit(onPane(way.at, even, random) - way.at);
+    const double cosine = dot(way.direction, normal);
+    if (cosine <= 0.0) return;
+    double distance_m = 0.0;
+    const Triangle* met = nearest(way.at, way.direction, distance_m);
+    if (met == nullptr || !met->material.isGlass()) return;
+    way.weight *= cosine / pi / (cosine / pi + paneDensity(way.at, way.direction));
+    way.ofPane = 1.0;
+    follow(way, sum, even, random);
+  }
+
+  /// Turns a way from a surface's normal to a direction by the cosine.
+  template <class Even, class Random>
+  void scatter(Way& way, Even& even, Random& random) const {
+    const Vector normal = way.direction;
+    const double squared = even(random);
+    const double angle = 2.0 * pi * even(random);
+    const Vector side =
+        unit(cross(std::abs(normal.z) < 0.5 ? Vector{0.0, 0.0, 1.0} : Vector{1.0, 0.0, 0.0}, normal));
+    way.direction = std::sqrt(squared) * std::cos(angle) * side +
+                    std::sqrt(squared) * std::sin(angle) * cross(normal, side) +
+                    std::sqrt(1.0 - squared) * normal;
+    const double own = dot(way.direction, normal) / pi;
+    way.ofPane = own / (own + paneDensity(way.at, way.direction));
+  }
+
+  /// Illuminance by a point of the sun's disc, through panes, and by its image in an upright pane. [lx]
+  template <class Even, class Random>
+  double fromSun(Vector at, Vector normal, Even& even, Random& random) const {
+    const Vector sun = sky_.ontoSun(even, random);
+    double sum = std::max(dot(sun, normal), 0.0);
+    if (sum > 0.0) sum *= passedTo(at, sun);
+    for (const Vector across : {Vector{1.0, 0.0, 0.0}, Vector{0.0, 1.0, 0.0}}) {
+      const Vector way = sun - 2.0 * dot(sun, across) * across;
+      const double cosine = dot(way, normal);
+      double distance_m = 0.0;
+      if (cosine <= 0.0 || !meetsPane(at, way, across)) continue;
+      const Triangle* met = nearest(at, way, distance_m);
+      if (met == nullptr || !met->material.isGlass() || std::abs(dot(met->normal, across)) < 0.999) continue;
+      sum += cosine * sheet_.at(std::abs(dot(way, across)))[1] * passedTo(at + distance_m * way, sun);
+    }
+    return sky_.beam_lx * sum;
+  }
+
+  /// Transmittance of all panes on the way out; 0 where something stands in it.
+  [[nodiscard]] double passedTo(Vector at, Vector way) const {
+    double share = 1.0;
+    for (;;) {
+      double distance_m = 0.0;
+      const Triangle* met = nearest(at, way, distance_m);
+      if (met == nullptr) return share;
+      if (!met->material.isGlass()) return 0.0;
+      share *= sheet_.at(std::abs(dot(way, met->normal)))[0];
+      at = at + distance_m * way;
+    }
+  }
+
+  /// Whether a ray would meet a pane that faces a way, were nothing else there.
+  [[nodiscard]] bool meetsPane(Vector at, Vector way, Vector facing) const {
+    return std::any_of(panes_.begin(), panes_.end(), [&](const Pane& pane) {
+      const Triangle& own = triangles_[pane.triangle];
+      return std::abs(dot(own.normal, facing)) > 0.999 && distanceTo(own, at, way) > 0.0;
+    });
+  }
+
+  /// How far a triangle is along a ray; 0 where the ray does not meet it.
+  static double distanceTo(const Triangle& own, Vector at, Vector way) {
+    const double distance_m = dot(own.a - at, own.normal) / dot(way, own.normal);
+    if (!(distance_m > 0.0)) return 0.0;
+    const Vector point = at + distance_m * way;
+    const bool isInside = dot(cross(own.b - own.a, point - own.a), own.normal) >= 0.0 &&
+                          dot(cross(own.c - own.b, point - own.b), own.normal) >= 0.0 &&
+                          dot(cross(own.a - own.c, point - own.c), own.normal) >= 0.0;
+    return isInside ? distance_m : 0.0;
+  }
+
+  /// Panes are drawn by how near they are, hidden or not.
+  static double chanceOf(const Pane& pane, Vector at) {
+    const Vector towards = pane.centre - at;
+    return pane.area_m2 / (pane.area_m2 + dot(towards, towards));
   }
 
   template <class Even, class Random>
-  Vector onPane(Even& even, Random& random) const {
-    double area = even(random) * paneArea_;
-    for (const std::size_t pane : panes_) {
-      const Triangle& own = triangles_[pane];
-      area -= 0.5 * length(cross(own.b - own.a, own.c - own.a));
-      if (area > 0.0 && pane != panes_.back()) continue;
-      const double u = std::sqrt(even(random));
-      const double v = even(random);
-      return own.a + u * (1.0 - v) * (own.b - own.a) + u * v * (own.c - own.a);
-    }
-    return {};
+  Vector onPane(Vector at, Even& even, Random& random) const {
+    double chances = 0.0;
+    for (const Pane& pane : panes_) chances += chanceOf(pane, at);
+    double chance = even(random) * chances;
+    auto drawn = panes_.begin();
+    while (drawn + 1 != panes_.end() && chance >= chanceOf(*drawn, at)) chance -= chanceOf(*drawn++, at);
+    const Triangle& own = triangles_[drawn->triangle];
+    const double u = std::sqrt(even(random));
+    const double v = even(random);
+    return own.a + u * (1.0 - v) * (own.b - own.a) + u * v * (own.c - own.a);
   }
 
-  /// Density over solid angle of directions drawn towards the panes, which may be hidden. [1/sr]
+  /// Density over solid angle of directions drawn to panes. [1/sr]
   [[nodiscard]] double paneDensity(Vector at, Vector way) const {
     double density = 0.0;
-    for (const std::size_t pane : panes_) {
-      const Triangle& own = triangles_[pane];
-      const double cosine = dot(way, own.normal);
-      const double distance_m = dot(own.a - at, own.normal) / cosine;
-      if (!(distance_m > 0.0)) continue;
-      const Vector point = at + distance_m * way;
-      const bool isInside = dot(cross(own.b - own.a, point - own.a), own.normal) >= 0.0 &&
-                            dot(cross(own.c - own.b, point - own.b), own.normal) >= 0.0 &&
-                            dot(cross(own.a - own.c, point - own.c), own.normal) >= 0.0;
-      if (isInside) density += distance_m * distance_m / (std::abs(cosine) * paneArea_);
+    double chances = 0.0;
+    for (const Pane& pane : panes_) {
+      const Triangle& own = triangles_[pane.triangle];
+      const double chance = chanceOf(pane, at);
+      chances += chance;
+      const double distance_m = distanceTo(own, at, way);
+      if (distance_m > 0.0)
+        density += chance * distance_m * distance_m / (std::abs(dot(way, own.normal)) * pane.area_m2);
     }
-    return density;
+    return density / chances;
   }
 
   const Triangle* nearest(Vector at, Vector way, double& distance_m) const {
@@ -267,16 +441,17 @@ class Room {
   }
 
   std::vector<Triangle> triangles_;
-  std::vector<std::size_t> panes_;
-  double paneArea_ = 0.0;
+  Sky sky_;
+  std::vector<Pane> panes_;
   Sheet sheet_{1.0};
   RTCDevice device_;
   RTCScene scene_;
 };
 
 struct Sensor {
-  Vector at;
-  double mean_lx = 0.0, deviation_lx = 0.0;
+  Vector at, normal;
+  Brought mean;
+  double deviation_lx = 0.0;
 };
 
 /// Paths until the mean's standard deviation is as asked, in blocks.
@@ -284,36 +459,44 @@ void measure(const Room& room, double deviation, std::size_t number, Sensor& sen
   constexpr std::uint64_t block = 16384;
   constexpr std::uint64_t most = 2000 * block;
   std::mt19937_64 random(0xc1e7e5 + number);
-  double sum = 0.0, squares = 0.0;
+  Brought sum;
+  double squares = 0.0;
   for (std::uint64_t count = block; count <= most; count += block) {
     for (std::uint64_t i = 0; i < block; ++i) {
-      const double own = room.path(sensor.at, {0.0, 0.0, 1.0}, random);
-      sum += own;
-      squares += own * own;
+      const Brought own = room.path(sensor.at, sensor.normal, random);
+      sum.all_lx += own.all_lx;
+      sum.straight_lx += own.straight_lx;
+      sum.returned_lx += own.returned_lx;
+      squares += own.all_lx * own.all_lx;
     }
     const auto paths = static_cast<double>(count);
-    sensor.mean_lx = sum / paths;
-    sensor.deviation_lx = std::sqrt((squares / paths - sensor.mean_lx * sensor.mean_lx) / paths);
-    if (sensor.deviation_lx <= deviation * sensor.mean_lx) return;
+    sensor.mean = {sum.all_lx / paths, sum.straight_lx / paths, sum.returned_lx / paths};
+    const double mean_lx = sensor.mean.all_lx;
+    sensor.deviation_lx = std::sqrt((squares / paths - mean_lx * mean_lx) / paths);
+    if (sensor.deviation_lx <= deviation * mean_lx) return;
   }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::cerr << "usage: reference_paths MODEL.obj SENSORS.csv DEVIATION > REFERENCE.csv\n"
-                 "SENSORS.csv: x,y,z in metres, looking up; DEVIATION: relative, of each mean\n";
+  const std::string sky = argc == 5 ? argv[4] : "overcast";
+  if (argc < 4 || argc > 5 || (sky != "overcast" && sky != "clear")) {
+    std::cerr << "usage: reference_paths MODEL.obj SENSORS.csv DEVIATION [overcast|clear] > REFERENCE.csv\n"
+                 "SENSORS.csv: x,y,z in metres, and nx,ny,nz if it does not look up; DEVIATION: relative, of "
+                 "each mean\n";
     return 1;
   }
-  const Room room(readObj(argv[1]));
+  const Room room(readObj(argv[1]), sky == "clear" ? Sky::clear() : Sky::overcast());
   std::vector<Sensor> sensors;
   std::ifstream stream(argv[2]);
   for (std::string line; std::getline(stream, line);) {
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream words(line);
     Sensor sensor;
-    if (words >> sensor.at.x >> sensor.at.y >> sensor.at.z) sensors.push_back(sensor);
+    if (!(words >> sensor.at.x >> sensor.at.y >> sensor.at.z)) continue;  // a header
+    if (!(words >> sensor.normal.x >> sensor.normal.y >> sensor.normal.z)) sensor.normal = {0.0, 0.0, 1.0};
+    sensors.push_back(sensor);
   }
   const double deviation = std::stod(argv[3]);
   std::vector<std::thread> threads;
@@ -324,8 +507,9 @@ int main(int argc, char** argv) {
     });
   }
   for (std::thread& thread : threads) thread.join();
-  std::cout << "x,y,z,lux,standard_deviation_lux\n";
+  std::cout << "x,y,z,lux,standard_deviation_lux,straight_lux,returned_lux\n";
   for (const Sensor& sensor : sensors)
-    std::cout << sensor.at.x << ',' << sensor.at.y << ',' << sensor.at.z << ',' << sensor.mean_lx << ','
-              << sensor.deviation_lx << '\n';
+    std::cout << sensor.at.x << ',' << sensor.at.y << ',' << sensor.at.z << ',' << sensor.mean.all_lx << ','
+              << sensor.deviation_lx << ',' << sensor.mean.straight_lx << ',' << sensor.mean.returned_lx
+              << '\n';
 }

@@ -128,5 +128,75 @@ TEST(Ground, LiesInTheBuildingsShade) {
   EXPECT_NEAR(shadedRead_lx, shaded_lx, 0.02 * shaded_lx);
 }
 
+/// A black room with a pane, and a sill of 2 x 0.15 m outdoors at the pane's foot; what falls on the sill.
+double sillIlluminance_lx(const Study& study) {
+  Drawing drawing;
+  drawing.scene.materials[plaster].reflectance = glm::dvec3(0.0);
+  drawing.scene.materials[glass].transmittance = glm::dvec3(0.65);
+  addRoomWithPane(drawing, {0, 0, 0}, {4, 6, 3}, {1, 1, 3, 2});
+  const std::uint32_t sill = addObject(drawing, "sill");
+  drawing.face({{1, -0.15, 1}, {3, -0.15, 1}, {3, 0, 1}, {1, 0, 1}}, plaster, sill);
+  const Solved room = solved(drawing.scene, study);
+  double most_lx = 0.0;  // of the rows of both its faces
+  for (const SurfaceValue& row : room.solution.surfaces) {
+    if (room.building.model.surfaces[row.surface].name.starts_with("sill"))
+      most_lx = std::max(most_lx, row.illuminanceMean_lx);
+  }
+  return most_lx;
+}
+
+// A sill sees the pane beside it at grazing angles, and the sky in it: an eighth of its light. Followed here
+// direction by direction; a ray to the building's left, right or above passes it.
+TEST(Pane, MirrorsTheSkyOntoTheSill) {
+  Study study;
+  study.groundReflectance = 0.0;
+  study.accuracy = 0.02;
+  const Glass pane(0.65);
+  const auto luminance = [](double sine) {
+    return 10000.0 * 9.0 / (7.0 * std::numbers::pi) * (1.0 + 2.0 * sine) / 3.0;
+  };
+  double straight_lx = 0.0, mirrored_lx = 0.0;
+  constexpr int rows = 60, columns = 240, places = 24;
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      for (int k = 0; k < places; ++k) {
+        const double high = std::sqrt((i + 0.5) / rows), flat = std::sqrt(1.0 - high * high);
+        const double azimuth = 2.0 * std::numbers::pi * (j + 0.5) / columns;
+        const glm::dvec3 way(flat * std::sin(azimuth), flat * std::cos(azimuth), high);
+        const glm::dvec3 from(1.0 + 2.0 * (k * 0.618034 - std::floor(k * 0.618034)),
+                              -0.15 * (k + 0.5) / places, 1.0);
+        const double share = std::numbers::pi / (rows * columns * places) * luminance(high);
+        if (way.y <= 0.0) {
+          straight_lx += share;
+          continue;
+        }
+        const glm::dvec3 met = from - from.y / way.y * way;
+        if (met.x < 0.0 || met.x > 4.0 || met.z > 3.0) {
+          straight_lx += share;
+        } else if (met.x > 1.0 && met.x < 3.0 && met.z < 2.0) {
+          mirrored_lx += share * pane.reflectance(way.y);
+        }
+      }
+    }
+  }
+  const double read_lx = sillIlluminance_lx(study);
+  std::cout << "the sill has " << read_lx << " of " << straight_lx << " + " << mirrored_lx << " lx\n";
+  EXPECT_GT(mirrored_lx, 0.1 * straight_lx);
+  EXPECT_NEAR(read_lx, straight_lx + mirrored_lx, 0.01 * straight_lx);
+}
+
+// The sun at 45 deg before the pane: its image throws the share that glass mirrors at that angle onto all of
+// the sill.
+TEST(Pane, MirrorsTheSunOntoTheSill) {
+  Study study;
+  study.groundReflectance = 0.0;
+  study.sky.diffuseHorizontal_lx = 1.0;
+  study.sky.directNormal_lx = 60000.0;
+  study.sky.sun_deg = glm::dvec2(45.0, 180.0);
+  const double cosine = std::sqrt(0.5);
+  const double expected_lx = 60000.0 * cosine * (1.0 + Glass(0.65).reflectance(cosine));
+  EXPECT_NEAR(sillIlluminance_lx(study), expected_lx, 1.0 + 1e-3 * expected_lx);
+}
+
 }  // namespace
 }  // namespace clerestory
