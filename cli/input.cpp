@@ -34,6 +34,10 @@ bool isStudyFile(const std::filesystem::path& file) {
   return ending == ".toml";
 }
 
+void addAll(const std::vector<Diagnosis>& more, std::vector<Diagnosis>& diagnoses) {
+  for (const Diagnosis& diagnosis : more) addDiagnosis(diagnoses, diagnosis);
+}
+
 }  // namespace
 
 void addInputArguments(CLI::App& command, InputArguments& arguments) {
@@ -41,10 +45,11 @@ void addInputArguments(CLI::App& command, InputArguments& arguments) {
       ->required()
       ->option_text(" ");
   command
-      .add_option("--units", arguments.units, "what the model's numbers are: m cm mm ft in (OBJ: m, glTF: m)")
+      .add_option("--units", arguments.units,
+                  "what the model's numbers are: m cm mm ft in (m where that is possible)")
       ->option_text("UNIT")
       ->check(oneOf({"m", "cm", "mm", "ft", "in"}));
-  command.add_option("--up", arguments.upAxis, "the model's vertical axis: y or z (OBJ: z, glTF: y)")
+  command.add_option("--up", arguments.upAxis, "the model's vertical axis: y or z (OBJ: guessed, glTF: y)")
       ->option_text("AXIS")
       ->check(oneOf({"y", "z"}));
 }
@@ -60,35 +65,33 @@ Study readInput(const InputArguments& arguments) {
   return study;
 }
 
-Building readBuilding(const Study& study, std::vector<Diagnosis>& diagnoses,
-                      const std::function<void(const std::string& step)>& begin) {
-  const auto keep = [&diagnoses](const std::vector<Diagnosis>& more) {
-    for (const Diagnosis& diagnosis : more) {
-      addDiagnosis(diagnoses, diagnosis);
-    }
-  };
+CleanModel readCleanModel(const Study& study, std::vector<Diagnosis>& diagnoses,
+                          const std::function<void(const std::string& step)>& begin) {
   begin("reading the model");
   Scene scene = readModel(study.modelFile, study.model);
   applyMaterialRules(study, scene);
   addSurroundings(study, scene);
-  keep(scene.diagnoses);
+  addAll(scene.diagnoses, diagnoses);
 
   begin("cleaning the model");
   CleanModel model = cleanScene(scene);
-  scene = {};
-  keep(model.diagnoses);
+  addAll(model.diagnoses, diagnoses);
+  return model;
+}
 
+Building readBuilding(const Study& study, std::vector<Diagnosis>& diagnoses,
+                      const std::function<void(const std::string& step)>& begin) {
+  CleanModel model = readCleanModel(study, diagnoses, begin);
   begin("finding rooms");
   Building building = makeBuilding(std::move(model), study);
-  keep(building.diagnoses);
+  addAll(building.diagnoses, diagnoses);
   return building;
 }
 
 std::string warningText(const Diagnosis& diagnosis) {
   std::string text = diagnosis.code + " " + diagnosis.message;
-  if (!diagnosis.where.empty()) {
-    text += " (" + diagnosis.where + (diagnosis.count > 1 ? " and elsewhere" : "") + ")";
-  }
+  const std::string where = whereText(diagnosis);
+  if (!where.empty()) text += " (" + where + (diagnosis.count > 1 ? " and elsewhere" : "") + ")";
   if (diagnosis.count > 1) {
     text += ", " + std::to_string(diagnosis.count) + " times";
   }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
@@ -13,9 +14,11 @@
 #include <sstream>
 #include <system_error>
 
+#include <report/modelfile.hpp>
 #include <report/storeyplan.hpp>
 
 #include "input.hpp"
+#include "machine.hpp"
 #include "progress.hpp"
 #include "texttable.hpp"
 
@@ -51,6 +54,32 @@ Totals totalsOf(const Building& building) {
   }
   return totals;
 }
+
+/// What each step took.
+class Steps {
+ public:
+  struct Step {
+    std::string name;
+    double seconds = 0.0;
+    std::size_t peakMemoryBytes = 0;  ///< of the process up to the step's end
+  };
+
+  void begin(const std::string& name) {
+    end();
+    steps_.push_back({name, 0.0, 0});
+    begun_ = std::chrono::steady_clock::now();
+  }
+  void end() {
+    if (steps_.empty() || steps_.back().peakMemoryBytes > 0) return;
+    steps_.back().seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+    steps_.back().peakMemoryBytes = peakMemoryBytes();
+  }
+  [[nodiscard]] const std::vector<Step>& list() const { return steps_; }
+
+ private:
+  std::vector<Step> steps_;
+  std::chrono::steady_clock::time_point begun_;
+};
 
 /// A count of the clean-up: its key in JSON and its words.
 struct CleanupRow {
@@ -89,15 +118,35 @@ RoomWindows windowsOf(const Building& building, std::int32_t room) {
   return windows;
 }
 
+/// Sizes after each step, and at last of the building that light is computed in.
+std::vector<StepSize> sizesOf(const Building& building) {
+  std::vector<StepSize> sizes = building.model.counts.sizes;
+  const PolygonList& pieces = building.model.pieces.polygons;
+  sizes.push_back(
+      {"cut at panes, doorways and partitions", pieces.size(), pieces.corners.size() - 2 * pieces.size()});
+  return sizes;
+}
+
 Json vectorJson(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
-Json inspectionJson(const Building& building, const Totals& totals, const std::vector<Diagnosis>& diagnoses) {
+Json inspectionJson(const Building& building, const Totals& totals, const std::vector<Diagnosis>& diagnoses,
+                    const Steps& steps) {
   Json json;
+  const FileAxes& axes = building.model.axes;
+  json["units"] = axes.units;
+  json["units_are_guessed"] = axes.unitsAreGuessed;
+  json["up"] = axes.upAxis;
+  json["up_is_guessed"] = axes.upAxisIsGuessed;
   json["extent_m"] = {{"lowest", vectorJson(totals.lowest)}, {"highest", vectorJson(totals.highest)}};
   for (const CleanupRow& row : cleanupRows(building.model.counts)) {
     json["cleanup"][row.key] = row.count;
+  }
+  json["sizes"] = Json::array();
+  for (const StepSize& size : sizesOf(building)) {
+    json["sizes"].push_back(
+        {{"step", size.step}, {"polygons", size.polygons}, {"triangles", size.triangles}});
   }
   json["materials"] = Json::array();
   for (std::size_t i = 0; i < building.model.materials.size(); ++i) {
@@ -141,10 +190,17 @@ Json inspectionJson(const Building& building, const Totals& totals, const std::v
   }
   json["diagnoses"] = Json::array();
   for (const Diagnosis& diagnosis : diagnoses) {
-    json["diagnoses"].push_back({{"code", diagnosis.code},
-                                 {"message", diagnosis.message},
-                                 {"where", diagnosis.where},
-                                 {"count", diagnosis.count}});
+    Json row = {{"code", diagnosis.code},
+                {"message", diagnosis.message},
+                {"where", diagnosis.where},
+                {"count", diagnosis.count}};
+    if (diagnosis.place_m) row["place_m"] = vectorJson(*diagnosis.place_m);
+    json["diagnoses"].push_back(std::move(row));
+  }
+  json["steps"] = Json::array();
+  for (const Steps::Step& step : steps.list()) {
+    json["steps"].push_back(
+        {{"name", step.name}, {"seconds", step.seconds}, {"peak_memory_bytes", step.peakMemoryBytes}});
   }
   return json;
 }
@@ -215,19 +271,40 @@ std::string airText(const Building& building) {
   return table.text();
 }
 
+std::string sizesText(const Building& building) {
+  TextTable table({"after each step", "polygons", "triangles", ""});
+  for (const StepSize& size : sizesOf(building)) {
+    table.add({size.step, std::to_string(size.polygons), std::to_string(size.triangles), ""});
+  }
+  return table.text();
+}
+
+std::string stepsText(const Steps& steps) {
+  TextTable table({"step", "seconds", "peak MB", ""});
+  for (const Steps::Step& step : steps.list()) {
+    table.add({step.name, number(step.seconds, 2),
+               number(static_cast<double>(step.peakMemoryBytes) * 1e-6, 0), ""});
+  }
+  return table.text();
+}
+
 std::string inspectionText(const Study& study, const Building& building, const Totals& totals,
-                           const std::vector<Diagnosis>& diagnoses) {
+                           const std::vector<Diagnosis>& diagnoses, const Steps& steps) {
   const glm::dvec3 size = totals.highest - totals.lowest;
   std::string text = printable(study.modelFile.string()) + ": " + number(size.x, 2) + " x " +
                      number(size.y, 2) + " x " + number(size.z, 2) + " m, from (" +
                      number(totals.lowest.x, 2) + ", " + number(totals.lowest.y, 2) + ", " +
                      number(totals.lowest.z, 2) + ")\n";
+  const FileAxes& axes = building.model.axes;
+  text += "Units: " + axes.units + (axes.unitsAreGuessed ? " (guessed; --units states it)" : "") +
+          "; up: " + axes.upAxis + (axes.upAxisIsGuessed ? " (guessed; --up states it)" : "") + '\n';
   text += "\nWhat was read, and what became of it\n";
   for (const CleanupRow& row : cleanupRows(building.model.counts)) {
     std::ostringstream line;
     line << std::setw(12) << row.count << "  " << row.words << '\n';
     text += line.str();
   }
+  text += "\nSize\n" + sizesText(building);
   text += "\nMaterials\n" + materialsText(building, totals);
   text += "\nAir that is connected without crossing glass\n" + airText(building);
   text += "\nWindows: " + std::to_string(building.portals.size()) +
@@ -237,6 +314,7 @@ std::string inspectionText(const Study& study, const Building& building, const T
   for (const Diagnosis& diagnosis : diagnoses) {
     text += "  " + printable(warningText(diagnosis)) + "\n";
   }
+  text += "\nTime and memory\n" + stepsText(steps);
   return text;
 }
 
@@ -254,20 +332,45 @@ void writePlans(const std::filesystem::path& folder, const Building& building) {
   }
 }
 
-void runInspect(const InputArguments& arguments, bool json, const std::filesystem::path& plans) {
+/// Writes plans, or the repaired model as it was before it was cut at panes and doorways.
+void writeOutput(const std::filesystem::path& output, const Study& study, const CleanModel& repaired,
+                 const Building& building) {
+  if (!isModelFile(output)) {
+    writePlans(output, building);
+    return;
+  }
+  std::error_code failed;
+  if (std::filesystem::equivalent(output, study.modelFile, failed)) {
+    throw InputError(output.string() + " is the model itself: write the repaired one under another name");
+  }
+  std::vector<Mark> marks = repaired.marks;
+  marks.insert(marks.end(), building.marks.begin(), building.marks.end());
+  writeModel(output, repaired, marks);
+}
+
+void runInspect(const InputArguments& arguments, bool json,
+                const std::vector<std::filesystem::path>& outputs) {
   Study study = readInput(arguments);
   study.grids.clear();  // a grid that finds no room would end the inspection that is to tell why
   std::vector<Diagnosis> diagnoses;
-  const Building building = readBuilding(study, diagnoses, [](const std::string&) {});
+  Steps steps;
+  CleanModel model =
+      readCleanModel(study, diagnoses, [&steps](const std::string& step) { steps.begin(step); });
+  const bool isWritten = std::any_of(outputs.begin(), outputs.end(), isModelFile);
+  const CleanModel repaired = isWritten ? model : CleanModel{};
+  steps.begin("finding rooms");
+  const Building building = makeBuilding(std::move(model), study);
+  steps.end();
+  for (const Diagnosis& diagnosis : building.diagnoses) addDiagnosis(diagnoses, diagnosis);
   const Totals totals = totalsOf(building);
-  if (!plans.empty()) writePlans(plans, building);
+  for (const std::filesystem::path& output : outputs) writeOutput(output, study, repaired, building);
   if (json) {
     // Names come from outside and may be no UTF-8.
-    printResult(
-        inspectionJson(building, totals, diagnoses).dump(2, ' ', false, Json::error_handler_t::replace) +
-        "\n");
+    printResult(inspectionJson(building, totals, diagnoses, steps)
+                    .dump(2, ' ', false, Json::error_handler_t::replace) +
+                "\n");
   } else {
-    printResult(inspectionText(study, building, totals, diagnoses));
+    printResult(inspectionText(study, building, totals, diagnoses, steps));
   }
 }
 
@@ -277,7 +380,7 @@ void addInspectCommand(CLI::App& program, std::function<void()>& run) {
   struct Arguments {
     InputArguments input;
     bool json = false;
-    std::filesystem::path plans;
+    std::vector<std::filesystem::path> outputs;
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
@@ -285,18 +388,22 @@ void addInspectCommand(CLI::App& program, std::function<void()>& run) {
   addInputArguments(command, arguments->input);
   command.add_flag("--json", arguments->json, "print it as JSON");
   command
-      .add_option("-o,--output", arguments->plans,
-                  "a folder for a plan of each storey (SVG): rooms, windows, openings")
-      ->option_text("DIR");
+      .add_option("-o,--output", arguments->outputs,
+                  "a name that ends in .glb or .obj: the repaired model, with a coloured marker wherever a "
+                  "warning speaks of a place; else a folder for a plan of each storey (SVG). May be repeated")
+      ->option_text("FILE|DIR")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.footer(
       "Prints counts before and after the clean-up, materials with reflectance and area, the bodies of air,\n"
       "windows and rooms, and every warning that a study would give. It solves nothing.\n\n"
       "Examples:\n"
       "  clerestory inspect office.glb\n"
       "  clerestory inspect plan.obj --units mm --up y\n"
-      "  clerestory inspect study.toml        the same with the study's materials");
+      "  clerestory inspect study.toml        the same with the study's materials\n"
+      "  clerestory inspect house.obj -o cleaned.glb -o plans");
   command.callback([arguments, &run] {
-    run = [arguments] { runInspect(arguments->input, arguments->json, arguments->plans); };
+    run = [arguments] { runInspect(arguments->input, arguments->json, arguments->outputs); };
   });
 }
 

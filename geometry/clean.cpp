@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "convex.hpp"
+#include "findings.hpp"
 #include "merge.hpp"
 #include "panes.hpp"
 #include "subdivision.hpp"
@@ -15,13 +16,13 @@
 namespace clerestory {
 namespace {
 
-Soup collectFaces(const Scene& scene, const Tolerances& tolerances, CleanModel& model) {
+Soup collectFaces(const Scene& scene, const Tolerances& tolerances, CleanModel& model, Findings& findings) {
   Soup soup{scene.points, scene.faces, scene.faceMaterial, scene.faceObject, {}};
   model.counts.pointsRead = scene.points.size();
   model.counts.facesRead = scene.faces.size();
   for (const Cage& cage : scene.cages) {
     model.counts.facesRead += cage.faces.size();
-    tessellateCage(scene, cage, tolerances, soup, model.counts, model.diagnoses);
+    tessellateCage(scene, cage, tolerances, soup, model.counts, findings);
   }
   model.counts.cages = scene.cages.size();
   return soup;
@@ -43,9 +44,15 @@ NameRanks rankNames(const Scene& scene) {
   return {ranksOf(scene.materials.size(), material), ranksOf(scene.objects.size(), object)};
 }
 
+/// The larger, the worse.
+void notePolygon(const char* code, const Soup& soup, const PlanarPolygon& polygon, Findings& findings) {
+  findings.note(code, soup.points, polygon.outer, polygon.object,
+                0.5 * glm::length(doubleAreaVector(soup.points, polygon.outer)));
+}
+
 /// Merged polygons whose outlines are drawn twice, though their faces differed.
 void dropDuplicatePolygons(const Soup& soup, const NameRanks& ranks, std::vector<PlanarPolygon>& polygons,
-                           CleanModel& model) {
+                           CleanModel& model, Findings& findings) {
   std::vector<Footprint> footprints;
   for (const PlanarPolygon& polygon : polygons) {
     Footprint footprint{polygon.outer, polygon.material, polygon.object,
@@ -59,32 +66,29 @@ void dropDuplicatePolygons(const Soup& soup, const NameRanks& ranks, std::vector
   const std::vector<bool> duplicate = findDuplicates(std::move(footprints), ranks);
   std::vector<PlanarPolygon> kept;
   for (std::size_t i = 0; i < polygons.size(); ++i) {
-    if (!duplicate[i]) kept.push_back(std::move(polygons[i]));
+    if (!duplicate[i]) {
+      kept.push_back(std::move(polygons[i]));
+    } else {
+      notePolygon("G206", soup, polygons[i], findings);
+    }
   }
-  const std::size_t dropped = polygons.size() - kept.size();
   polygons = std::move(kept);
-  model.counts.duplicateFaces += dropped;
-  if (dropped > 0) {
-    addDiagnosis(model.diagnoses,
-                 {"G206", "surfaces drawn twice by different faces were dropped", "", dropped});
-  }
+  model.counts.duplicateFaces += findings.count("G206");
+  findings.tell("G206", "surfaces drawn twice by different faces were dropped; the largest is named");
 }
 
 std::vector<DividedPolygon> divide(Soup& soup, std::vector<PlanarPolygon> polygons,
-                                   const Tolerances& tolerances, CleanModel& model) {
+                                   const Tolerances& tolerances, Findings& findings) {
   std::vector<DividedPolygon> result;
-  std::size_t lost = 0;
   for (PlanarPolygon& polygon : polygons) {
     std::vector<Loop> pieces = convexPieces(soup.points, polygon, tolerances);
     if (pieces.empty()) {
-      ++lost;
+      notePolygon("G207", soup, polygon, findings);
       continue;
     }
     result.push_back({std::move(polygon), std::move(pieces)});
   }
-  if (lost > 0) {
-    model.diagnoses.push_back({"G207", "surfaces whose outline crosses itself were dropped", "", lost});
-  }
+  findings.tell("G207", "surfaces whose outline crosses itself were dropped; the largest is named");
   return result;
 }
 
@@ -166,6 +170,22 @@ void assemble(const Scene& scene, const Soup& soup, const std::vector<Piece>& pi
   }
 }
 
+/// Triangles of a ring and of the holes in it.
+std::size_t trianglesIn(const PlanarPolygon& polygon) {
+  std::size_t count = polygon.outer.size() - 2;
+  for (const Loop& hole : polygon.holes) count += hole.size() + 2;
+  return count;
+}
+
+void addSize(CleanupCounts& counts, const char* step, const PolygonList& faces) {
+  counts.sizes.push_back({step, faces.size(), faces.corners.size() - 2 * faces.size()});
+}
+
+void addSize(CleanupCounts& counts, const char* step, std::span<const DividedPolygon> divided) {
+  StepSize& size = counts.sizes.emplace_back(step, divided.size());
+  for (const DividedPolygon& each : divided) size.triangles += trianglesIn(each.polygon);
+}
+
 }  // namespace
 
 CleanModel cleanScene(const Scene& scene) {
@@ -174,21 +194,34 @@ CleanModel cleanScene(const Scene& scene) {
   CleanModel model;
   model.materials = scene.materials;
   model.luminaires = luminairesOf(scene.lights);
+  model.axes = scene.axes;
 
-  Soup soup = weld(collectFaces(scene, tolerances, model), tolerances, model.counts);
-  dropDegenerateFaces(soup, tolerances, model.counts, model.diagnoses);
-  dropDuplicateFaces(soup, ranks, model.counts, model.diagnoses);
-  splitWarpedFaces(soup, tolerances, model.counts, model.diagnoses);
+  Findings findings(scene.objects);
+  addSize(model.counts, "faces as read", scene.faces);
+  Soup soup = collectFaces(scene, tolerances, model, findings);
+  if (!scene.cages.empty()) addSize(model.counts, "with facets of subdivision cages", soup.faces);
+  soup = weld(soup, tolerances, model.counts);
+  dropDegenerateFaces(soup, tolerances, model.counts, findings);
+  addSize(model.counts, "welded, without degenerate faces", soup.faces);
+  dropDuplicateFaces(soup, ranks, model.counts, findings);
+  addSize(model.counts, "without duplicates", soup.faces);
+  splitWarpedFaces(soup, tolerances, model.counts, findings);
+  addSize(model.counts, "non-planar faces split", soup.faces);
 
-  std::vector<PlanarPolygon> polygons = mergeCoplanar(soup, tolerances, model.diagnoses);
-  dropDuplicatePolygons(soup, ranks, polygons, model);
-  std::vector<DividedPolygon> divided = divide(soup, std::move(polygons), tolerances, model);
+  std::vector<PlanarPolygon> polygons = mergeCoplanar(soup, tolerances, findings);
+  dropDuplicatePolygons(soup, ranks, polygons, model, findings);
+  std::vector<DividedPolygon> divided = divide(soup, std::move(polygons), tolerances, findings);
+  addSize(model.counts, "coplanar neighbours merged", divided);
   dropFurtherPaneSheets(soup.points, scene.materials, tolerances, divided, model.counts);
   model.counts.polygons = divided.size();
+  addSize(model.counts, "one sheet a pane", divided);
 
   const std::vector<Piece> pieces = orderPieces(soup, ranks, std::move(divided));
   model.counts.pieces = pieces.size();
   assemble(scene, soup, pieces, model);
+  addSize(model.counts, "convex pieces", model.pieces.polygons);
+  model.diagnoses = findings.diagnoses();
+  model.marks = findings.marks();
   return model;
 }
 

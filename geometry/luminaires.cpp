@@ -30,6 +30,13 @@ bool seat(const RayScene& rays, Luminaire& luminaire) {
   return ahead_m > before_m;
 }
 
+void addLuminaireDiagnosis(Building& building, const Luminaire& luminaire, const char* code,
+                           const char* message) {
+  const std::string where = "luminaire \"" + luminaire.name + "\"";
+  addDiagnosis(building.diagnoses, {code, message, where, 1, luminaire.position_m});
+  building.marks.push_back({code, luminaire.name, luminaire.position_m});
+}
+
 }  // namespace
 
 void placeLuminaires(Building& building, const Study& study) {
@@ -46,10 +53,9 @@ void placeLuminaires(Building& building, const Study& study) {
   const RayScene rays(building.model, {});
   for (Luminaire& luminaire : building.luminaires) {
     if (!seat(rays, luminaire)) continue;
-    addDiagnosis(building.diagnoses, {"G260",
-                                      "luminaires up to 10 mm behind a surface were put before it, so that "
-                                      "they are not hidden",
-                                      luminaire.name});
+    addLuminaireDiagnosis(
+        building, luminaire, "G260",
+        "luminaires up to 10 mm behind a surface were put before it, so that they are not hidden");
   }
 }
 
@@ -73,10 +79,9 @@ void checkLuminaires(Building& building) {
     const bool isInRoom = std::any_of(building.rooms.begin(), building.rooms.end(),
                                       [&](const Room& room) { return room.domain == domain; });
     if (isInRoom || (domain >= 0 && building.domains[static_cast<std::size_t>(domain)].open)) continue;
-    addDiagnosis(
-        building.diagnoses,
-        {"G261", "luminaires stand in no room but within something solid; their light reaches nothing",
-         building.luminaires[i].name});
+    addLuminaireDiagnosis(
+        building, building.luminaires[i], "G261",
+        "luminaires stand in no room but within something solid; their light reaches nothing");
   }
 }
 

@@ -16,6 +16,7 @@
 #include <geometry/sampling.hpp>
 
 #include "gaps.hpp"
+#include "roomnames.hpp"
 
 namespace clerestory {
 namespace {
@@ -322,7 +323,7 @@ void addBorders(Building& building, const std::vector<Draft>& drafts, const std:
 }
 
 /// Where and how wide the largest gap of a room is, in words; empty where none is found within 3 m of it.
-std::string gapText(const Building& building, const Room& room) {
+std::optional<Gap> gapAround(const Building& building, const Room& room) {
   constexpr double around_m = 3.0;
   const Pieces& pieces = building.model.pieces;
   glm::dvec3 low(1e300);
@@ -339,12 +340,7 @@ std::string gapText(const Building& building, const Room& room) {
   high = glm::dvec3(high.x, high.y, room.ceiling_m) + around_m;
   const glm::dvec3 inside =
       centreOf(pieces, largest) + glm::dvec3(0.0, 0.0, 0.5 * (room.ceiling_m - room.floor_m));
-  const std::optional<Gap> gap = widestGap(pieces, inside, low, high);
-  if (!gap) return {};
-  char text[120];
-  std::snprintf(text, sizeof text, "; the largest gap is about %.2f m wide, at (%.2f, %.2f, %.2f)",
-                gap->width_m, gap->place_m.x, gap->place_m.y, gap->place_m.z);
-  return text;
+  return widestGap(pieces, inside, low, high);
 }
 
 }  // namespace
@@ -393,15 +389,23 @@ void findRooms(Building& building, const RayScene& rays, const std::vector<RoomA
     building.sideRoom[side] = places.roomOf(side);
   for (Portal& portal : building.portals)
     portal.room = building.sideRoom[2 * portal.piece + (portal.frontIsInside ? 0 : 1)];
+  nameRooms(building);
   addBorders(building, drafts, airs);
 
   if (noneIsClosed && !drafts.empty()) {
-    addDiagnosis(building.diagnoses,
-                 {"G251",
-                  "no part of the model is closed air: its covered floor is taken as one room, lit through "
-                  "every gap; close the envelope (walls, floor, ceiling, panes) for exact rooms" +
-                      gapText(building, drafts.front().room),
-                  ""});
+    Diagnosis diagnosis{
+        "G251",
+        "no part of the model is closed air: its covered floor is taken as one room, lit "
+        "through every gap; close the envelope (walls, floor, ceiling, panes) for exact rooms",
+        ""};
+    if (const std::optional<Gap> gap = gapAround(building, drafts.front().room)) {
+      char text[60];
+      std::snprintf(text, sizeof text, "; the largest gap is about %.2f m wide", gap->width_m);
+      diagnosis.message += text;
+      diagnosis.place_m = gap->place_m;
+      building.marks.push_back({"G251", "", gap->place_m});
+    }
+    addDiagnosis(building.diagnoses, diagnosis);
   }
 }
 

@@ -345,33 +345,34 @@ void addDrawn(const Scene& scene, const Cage& cage, Soup& soup) {
 }  // namespace
 
 void tessellateCage(const Scene& scene, const Cage& cage, const Tolerances& tolerances, Soup& soup,
-                    CleanupCounts& counts, std::vector<Diagnosis>& diagnoses) {
-  const std::string name = cage.object < scene.objects.size() ? scene.objects[cage.object] : "";
+                    CleanupCounts& counts, Findings& findings) {
   if (cage.faces.size() == 0) return;
+  const auto note = [&](const char* code, std::size_t count, const std::string& message) {
+    Loop corners;
+    std::ranges::copy_if(cage.faces.corners, std::back_inserter(corners),
+                         [&](std::uint32_t corner) { return corner < scene.points.size(); });
+    findings.note(code, scene.points, corners, cage.object, 0.0, count);
+    findings.tell(code, message);
+  };
   const std::optional<LimitCage> limit = limitCage(scene, cage, tolerances.grid_m);
   if (!limit) {
-    addDiagnosis(diagnoses, {"G210", "a subdivision cage could not be read and was left out", name});
+    note("G210", 1, "a subdivision cage could not be read and was left out");
     return;
   }
   if (!takesSurfaces(*limit)) {
-    addDiagnosis(
-        diagnoses,
-        {"G213", "a subdivision cage with two faces folded onto each other was taken as it is drawn", name});
+    note("G213", 1, "a subdivision cage with two faces folded onto each other was taken as it is drawn");
     addDrawn(scene, cage, soup);
     return;
   }
   if (cage.boundary == Cage::Boundary::none) {
-    addDiagnosis(
-        diagnoses,
-        {"G211", "a subdivision cage without boundary interpolation was given smooth boundary edges", name});
+    note("G211", 1, "a subdivision cage without boundary interpolation was given smooth boundary edges");
   }
   constexpr double finest_m = 1e-4;
   std::size_t withoutLimit = 0;
   CageFacets facets(*limit, std::max(cage.tolerance_m, finest_m), tolerances.planar_m, soup);
   counts.cageFacets += facets.build(cage, withoutLimit);
   if (withoutLimit > 0) {
-    addDiagnosis(diagnoses, {"G212", "faces of a subdivision cage have no limit surface and were left out",
-                             name, withoutLimit});
+    note("G212", withoutLimit, "faces of a subdivision cage have no limit surface and were left out");
   }
 }
 

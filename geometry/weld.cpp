@@ -203,9 +203,9 @@ Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts)
 }
 
 void dropDegenerateFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts,
-                         std::vector<Diagnosis>& diagnoses) {
-  std::size_t dropped = 0;
-  filterFaces(soup, [&](std::size_t, Loop& corners) {
+                         Findings& findings) {
+  filterFaces(soup, [&](std::size_t face, Loop& corners) {
+    const Loop drawn = corners;
     dropRepeatedCorners(corners);
     if (corners.size() >= 3) {
       startAtSmallest(soup.points, corners);
@@ -216,13 +216,11 @@ void dropDegenerateFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts
         return true;
       }
     }
-    ++dropped;
+    findings.note("G201", soup.points, drawn, soup.object[face], longestEdge_m(soup.points, drawn));
     return false;
   });
-  counts.degenerateFaces += dropped;
-  if (dropped > 0) {
-    diagnoses.push_back({"G201", "faces without area were dropped", "", dropped});
-  }
+  counts.degenerateFaces += findings.count("G201");
+  findings.tell("G201", "faces without area were dropped; the longest is named");
 }
 
 std::vector<bool> findDuplicates(std::vector<Footprint> footprints, const NameRanks& ranks) {
@@ -254,8 +252,7 @@ std::vector<bool> findDuplicates(std::vector<Footprint> footprints, const NameRa
   return result;
 }
 
-void dropDuplicateFaces(Soup& soup, const NameRanks& ranks, CleanupCounts& counts,
-                        std::vector<Diagnosis>& diagnoses) {
+void dropDuplicateFaces(Soup& soup, const NameRanks& ranks, CleanupCounts& counts, Findings& findings) {
   std::vector<Footprint> footprints;
   for (std::size_t face = 0; face < soup.faces.size(); ++face) {
     Footprint footprint{Loop(soup.faces[face].begin(), soup.faces[face].end()), soup.material[face],
@@ -265,21 +262,19 @@ void dropDuplicateFaces(Soup& soup, const NameRanks& ranks, CleanupCounts& count
     footprints.push_back(std::move(footprint));
   }
   const std::vector<bool> duplicate = findDuplicates(std::move(footprints), ranks);
-  std::size_t dropped = 0;
-  filterFaces(soup, [&](std::size_t face, Loop&) {
-    dropped += duplicate[face] ? 1 : 0;
+  filterFaces(soup, [&](std::size_t face, Loop& corners) {
+    if (duplicate[face]) {
+      findings.note("G202", soup.points, corners, soup.object[face],
+                    0.5 * glm::length(doubleAreaVector(soup.points, corners)));
+    }
     return !duplicate[face];
   });
-  counts.duplicateFaces += dropped;
-  if (dropped > 0) {
-    diagnoses.push_back({"G202", "faces drawn twice were dropped", "", dropped});
-  }
+  counts.duplicateFaces += findings.count("G202");
+  findings.tell("G202", "faces drawn twice were dropped; the largest is named");
 }
 
-void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts,
-                      std::vector<Diagnosis>& diagnoses) {
+void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts, Findings& findings) {
   Soup result;
-  std::size_t warped = 0;
   double worst_m = 0.0;
   const auto add = [&](std::span<const std::uint32_t> corners, std::size_t face) {
     result.faces.add(corners);
@@ -295,7 +290,7 @@ void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& c
       add(loop, face);
       continue;
     }
-    ++warped;
+    findings.note("G203", soup.points, loop, soup.object[face], warp);
     worst_m = std::max(worst_m, warp);
     for (const auto& triangle : trianglesOf(soup.points, loop, normal)) {
       Loop corners(triangle.begin(), triangle.end());
@@ -308,14 +303,10 @@ void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& c
   soup.material = std::move(result.material);
   soup.object = std::move(result.object);
   soup.displaced = std::move(result.displaced);
-  counts.nonPlanarFaces += warped;
-  if (warped > 0) {
-    const auto worst_mm = static_cast<long>(std::lround(worst_m * 1e3));
-    diagnoses.push_back({"G203",
-                         "non-planar faces were split into triangles; the worst leaves its plane by " +
-                             std::to_string(worst_mm) + " mm",
-                         "", warped});
-  }
+  counts.nonPlanarFaces += findings.count("G203");
+  const auto worst_mm = static_cast<long>(std::lround(worst_m * 1e3));
+  findings.tell("G203", "non-planar faces were split into triangles; the worst leaves its plane by " +
+                            std::to_string(worst_mm) + " mm");
 }
 
 }  // namespace clerestory

@@ -3,6 +3,7 @@
 // split.
 #pragma once
 
+#include "findings.hpp"
 #include "soup.hpp"
 
 namespace clerestory {
@@ -12,8 +13,7 @@ namespace clerestory {
 Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts);
 
 /// Drops repeated corners and faces without area; starts every face at its smallest corner.
-void dropDegenerateFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts,
-                         std::vector<Diagnosis>& diagnoses);
+void dropDegenerateFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts, Findings& findings);
 
 /// A face or polygon as far as its being drawn twice is concerned.
 struct Footprint {
@@ -27,11 +27,9 @@ struct Footprint {
 std::vector<bool> findDuplicates(std::vector<Footprint> footprints, const NameRanks& ranks);
 
 /// Drops faces that are drawn twice.
-void dropDuplicateFaces(Soup& soup, const NameRanks& ranks, CleanupCounts& counts,
-                        std::vector<Diagnosis>& diagnoses);
+void dropDuplicateFaces(Soup& soup, const NameRanks& ranks, CleanupCounts& counts, Findings& findings);
 
 /// Splits faces whose corners leave their plane into triangles.
-void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts,
-                      std::vector<Diagnosis>& diagnoses);
+void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts, Findings& findings);
 
 }  // namespace clerestory

@@ -8,15 +8,10 @@
 #include "obj.hpp"
 #include "textfile.hpp"
 #include "units.hpp"
+#include "upaxis.hpp"
 
 namespace clerestory {
 namespace {
-
-/// How a format is meant where nothing is said.
-struct Format {
-  bool isObj;
-  std::string upAxis;
-};
 
 void checkOptions(const ModelOptions& options) {
   if (options.units && !metresOf(*options.units)) {
@@ -55,15 +50,16 @@ std::string sizeText(const glm::dvec3& extent, double metres) {
          lengthText(extent.z * metres) + " m";
 }
 
-/// Metres of the model's unit: as asked, else metres, else the one unit that makes it a building.
-double chooseUnit(const std::filesystem::path& file, const Format& format, const ModelOptions& options,
-                  Scene& scene) {
+/// Sets the model's unit: as asked, else metres, else the one unit that makes it a building.
+void chooseUnit(const std::filesystem::path& file, bool isObj, const ModelOptions& options, Scene& scene) {
   if (options.units) {
-    return *metresOf(*options.units);
+    scene.axes.units = *options.units;
+    return;
   }
   const SizeJudgement size = judgeSize(scene);
+  scene.axes.unitsAreGuessed = isObj || !size.metresArePossible;
   if (size.metresArePossible) {
-    return 1.0;
+    return;
   }
   const std::string asMetres = sizeText(size.extent, 1.0);
   if (size.others.size() == 1) {
@@ -73,22 +69,66 @@ double chooseUnit(const std::filesystem::path& file, const Format& format, const
                                        size.others[0] + " (" + sizeText(size.extent, metres) +
                                        "); --units or [model] units says it for certain",
                                    file.string()});
-    return metres;
+    scene.axes.units = size.others[0];
+    return;
   }
-  if (!format.isObj) {
+  if (!isObj) {
     addDiagnosis(scene.diagnoses, {"C102",
                                    "glTF is in metres, but that makes the model " + asMetres +
                                        ", which is no building; --units or [model] units corrects it",
                                    file.string()});
-    return 1.0;
+    return;
   }
   throw InputError(file.string() + ": the model's unit is not clear: as metres it measures " + asMetres +
                    ", as cm " + sizeText(size.extent, 0.01) + ", as mm " + sizeText(size.extent, 0.001) +
                    ", as ft " + sizeText(size.extent, 0.3048) + "; state it with --units or [model] units");
 }
 
-void bringUpright(Scene& scene, const std::string& upAxis, double metres) {
-  const auto upright = [&](const glm::dvec3& v) { return upAxis == "y" ? glm::dvec3(v.x, -v.z, v.y) : v; };
+/// Sets the model's vertical: as asked, else as glTF has it or an OBJ seems to have it.
+void chooseUpAxis(const std::filesystem::path& file, bool isObj, const ModelOptions& options, Scene& scene) {
+  if (options.upAxis || !isObj) {
+    scene.axes.upAxis = options.upAxis.value_or("y");
+    return;
+  }
+  const UpAxis up = judgeUpAxis(file, scene);
+  scene.axes.upAxis = up.axis;
+  scene.axes.upAxisIsGuessed = true;
+  if (up.axis == "y" || up.isDoubtful) {
+    addDiagnosis(scene.diagnoses, {"C103",
+                                   up.axis + " was taken for up, because " + up.reason +
+                                       (up.isDoubtful ? "; there are signs of the other axis too" : "") +
+                                       "; --up or [model] up says it for certain",
+                                   file.string()});
+  }
+}
+
+void leaveOutMarkers(Scene& scene) {
+  std::vector<bool> isMarker;
+  for (const std::string& object : scene.objects) isMarker.push_back(object.starts_with(markerObject));
+  if (std::find(isMarker.begin(), isMarker.end(), true) == isMarker.end()) return;
+  PolygonList faces;
+  std::size_t kept = 0;
+  for (std::size_t face = 0; face < scene.faces.size(); ++face) {
+    if (isMarker[scene.faceObject[face]]) continue;
+    faces.add(scene.faces[face]);
+    scene.faceMaterial[kept] = scene.faceMaterial[face];
+    scene.faceObject[kept] = scene.faceObject[face];
+    ++kept;
+  }
+  scene.faces = std::move(faces);
+  scene.faceMaterial.resize(kept);
+  scene.faceObject.resize(kept);
+  const auto first = std::find(isMarker.begin(), isMarker.end(), true);
+  addDiagnosis(scene.diagnoses,
+               {"C115", "markers of an earlier inspection were left out",
+                "object \"" + scene.objects[static_cast<std::size_t>(first - isMarker.begin())] + "\"",
+                static_cast<std::size_t>(std::count(isMarker.begin(), isMarker.end(), true))});
+}
+
+void bringUpright(Scene& scene) {
+  const double metres = *metresOf(scene.axes.units);
+  const bool isYUp = scene.axes.upAxis == "y";
+  const auto upright = [&](const glm::dvec3& v) { return isYUp ? glm::dvec3(v.x, -v.z, v.y) : v; };
   for (glm::dvec3& point : scene.points) {
     point = upright(point) * metres;
   }
@@ -145,21 +185,15 @@ Scene readModel(const std::filesystem::path& file, const ModelOptions& options) 
     throw InputError(file.string() +
                      ": a model's name ends in .obj, .gltf or .glb; export it as one of these");
   }
-  const Format format{isObj, isObj ? "z" : "y"};
   Scene scene = isObj ? readObj(file) : readGltf(file);
+  leaveOutMarkers(scene);
   if (scene.faces.size() == 0 && scene.cages.empty()) {
     throw InputError(file.string() + ": there is no face in the model" + leftOutText(scene) +
                      "; check that the export has geometry");
   }
-  const double metres = chooseUnit(file, format, options, scene);
-  if (isObj && !options.upAxis && looksYUp(scene)) {
-    addDiagnosis(scene.diagnoses,
-                 {"C103",
-                  "the model was read with z up, but looks as if y were up: say so with --up y "
-                  "or up = \"y\" in [model]",
-                  file.string()});
-  }
-  bringUpright(scene, options.upAxis.value_or(format.upAxis), metres);
+  chooseUnit(file, isObj, options, scene);
+  chooseUpAxis(file, isObj, options, scene);
+  bringUpright(scene);
   for (const ModelOptions::Subdivide& rule : options.subdivide) {
     applySubdivision(scene, rule);
   }

@@ -29,8 +29,4 @@ struct SizeJudgement {
 /// rooms and houses it is 1.2 to 9.5 m, and with less than a decade between them cm and mm never both fit.
 SizeJudgement judgeSize(const Scene& scene);
 
-/// Whether y seems to be up, where z was taken for it: far more area faces y than x or z, as floors and
-/// ceilings do, or about as much in a model that is low along y. A hint, not a proof.
-bool looksYUp(const Scene& scene);
-
 }  // namespace clerestory

@@ -184,10 +184,13 @@ Json energy(const Solution& solution) {
 Json diagnoses(const ReportInput& input) {
   Json list = Json::array();
   for (const Diagnosis& diagnosis : input.diagnoses) {
-    list.push_back({{"code", validUtf8(diagnosis.code)},
-                    {"message", validUtf8(withoutFolders(input.study, diagnosis.message))},
-                    {"where", validUtf8(withoutFolders(input.study, diagnosis.where))},
-                    {"count", diagnosis.count}});
+    Json row = {{"code", validUtf8(diagnosis.code)},
+                {"message", validUtf8(withoutFolders(input.study, diagnosis.message))},
+                {"where", validUtf8(withoutFolders(input.study, diagnosis.where))},
+                {"count", diagnosis.count}};
+    if (diagnosis.place_m)
+      row["place_m"] = {diagnosis.place_m->x, diagnosis.place_m->y, diagnosis.place_m->z};
+    list.push_back(std::move(row));
   }
   return list;
 }

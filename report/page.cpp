@@ -323,7 +323,7 @@ std::string assumptionsSection(const Page& page) {
   std::vector<std::vector<std::string>> rows;
   for (const Diagnosis& diagnosis : page.input.diagnoses) {
     rows.push_back({escapeHtml(diagnosis.code), escapeHtml(withoutFolders(study, diagnosis.message)),
-                    escapeHtml(withoutFolders(study, diagnosis.where)),
+                    escapeHtml(withoutFolders(study, whereText(diagnosis))),
                     fixedNumber(static_cast<double>(diagnosis.count), 0)});
   }
   html +=

@@ -242,9 +242,36 @@ TEST(Model, AsksForTheUnitWhereNoneFits) {
   }
 }
 
-TEST(Model, HintsThatYMayBeUp) {
-  EXPECT_EQ(countOf(readText(boxText(6, 2.5, 8)).diagnoses, "C103"), 1U);
-  EXPECT_EQ(countOf(readText(boxText(6, 8, 2.5)).diagnoses, "C103"), 0U);
+/// The axis taken for up, with a * where C103 tells of it.
+std::string upAxisOf(const std::string& text) {
+  const Scene scene = readText(text);
+  EXPECT_TRUE(scene.axes.upAxisIsGuessed);
+  return scene.axes.upAxis + (countOf(scene.diagnoses, "C103") > 0 ? "*" : "");
+}
+
+TEST(Model, GuessesTheUpAxis) {
+  const std::string lyingAlongY = boxText(6, 2.5, 8);
+  const std::string lyingAlongZ = boxText(6, 8, 2.5);
+  const std::string cube = boxText(3, 3, 3);
+  EXPECT_EQ(upAxisOf(lyingAlongY), "y*");
+  EXPECT_EQ(upAxisOf(lyingAlongZ), "z");
+  EXPECT_EQ(upAxisOf(cube), "z");
+  // What the head states stands over the geometry, and the geometry over what an exporter usually does.
+  EXPECT_EQ(upAxisOf("# units: m, Y up\n" + cube), "y*");
+  EXPECT_EQ(upAxisOf("# Z-up\n" + lyingAlongY), "z*");
+  EXPECT_EQ(upAxisOf("# Blender 4.1\n" + cube), "y*");
+  EXPECT_EQ(upAxisOf("# Blender 4.1\n" + lyingAlongZ), "z*");
+  EXPECT_EQ(upAxisOf("# drawn by a blenderer; really up\n" + cube), "z");
+  EXPECT_EQ(upAxisOf(cube + "# y up\n"), "z");  // not at the head
+}
+
+TEST(Model, StatedUpAxisStandsOverTheGuess) {
+  ModelOptions options;
+  options.upAxis = "z";
+  const Scene scene = readText("# y up\n" + boxText(6, 2.5, 8), options);
+  EXPECT_EQ(scene.axes.upAxis, "z");
+  EXPECT_FALSE(scene.axes.upAxisIsGuessed);
+  EXPECT_EQ(countOf(scene.diagnoses, "C103"), 0U);
 }
 
 TEST(Model, MatchesGlobs) {

@@ -36,6 +36,20 @@ struct Pieces {
   [[nodiscard]] std::size_t size() const { return polygons.size(); }
 };
 
+/// A place that a diagnosis speaks of, for who looks for it in the model.
+struct Mark {
+  std::string code;    ///< the diagnosis'
+  std::string object;  ///< or luminaire; may be empty
+  glm::dvec3 place_m;
+};
+
+/// How large the model is after a step of the clean-up.
+struct StepSize {
+  std::string step;
+  std::size_t polygons = 0;
+  std::size_t triangles = 0;  ///< that these polygons would make
+};
+
 /// What the clean-up did, for the report and `inspect`.
 struct CleanupCounts {
   std::size_t pointsRead = 0, facesRead = 0, cages = 0, cageFacets = 0;
@@ -43,6 +57,7 @@ struct CleanupCounts {
   std::size_t paneSheetsDropped = 0;  ///< further sheets and rims of panes drawn as solids
   std::size_t polygons = 0;           ///< maximal planar polygons after merging
   std::size_t pieces = 0;             ///< convex pieces of these
+  std::vector<StepSize> sizes;        ///< after each step, in their order
 };
 
 /// Cleans a scene: tessellates cages, welds, removes degenerate and duplicate faces, merges coplanar
@@ -52,8 +67,10 @@ struct CleanModel {
   std::vector<Surface> surfaces;
   std::vector<Material> materials;
   std::vector<Luminaire> luminaires;  ///< that the model holds
+  FileAxes axes;                      ///< how its file was understood
   CleanupCounts counts;
   std::vector<Diagnosis> diagnoses;
+  std::vector<Mark> marks;  ///< of these diagnoses
 };
 CleanModel cleanScene(const Scene& scene);
 
@@ -114,6 +131,7 @@ struct Building {
   std::vector<Luminaire> luminaires;          ///< the model's and the study's
   std::vector<std::int32_t> luminaireDomain;  ///< #luminaires: domain, or -1 within something solid
   std::vector<Diagnosis> diagnoses;
+  std::vector<Mark> marks;  ///< of these diagnoses
 };
 
 /// Finds domains, portals and rooms in a clean model, places luminaires and lays the study's sensor grids.

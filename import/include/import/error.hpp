@@ -3,6 +3,9 @@
 // it.
 #pragma once
 
+#include <glm/vec3.hpp>
+
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -26,7 +29,11 @@ struct Diagnosis {
   std::string message;    ///< what, and what was done about it
   std::string where;      ///< file and line, JSON pointer, material or object name; may be empty
   std::size_t count = 1;  ///< how often it was met
+  std::optional<glm::dvec3> place_m{};  ///< of one that has a place: where it is worst
 };
+
+/// Where a diagnosis was met, worst of all if it knows: object "Wall" at (1.20, 3.40, 0.00); may be empty.
+std::string whereText(const Diagnosis& diagnosis);
 
 /// Adds one more of what `diagnosis` says: raises the count where the list has the code and message already.
 void addDiagnosis(std::vector<Diagnosis>& list, Diagnosis diagnosis);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <import/error.hpp>
@@ -94,6 +95,14 @@ struct PunctualLight {
 /// Point and spot lights as luminaires without extent. Those that are dark are left out.
 std::vector<Luminaire> luminairesOf(const std::vector<PunctualLight>& lights);
 
+/// How a file's numbers were understood.
+struct FileAxes {
+  std::string units = "m";  ///< m cm mm ft in
+  std::string upAxis = "z";
+  bool unitsAreGuessed = false;  ///< neither stated nor given by the format
+  bool upAxisIsGuessed = false;  ///< likewise
+};
+
 /// One model. Coordinates are metres, z up, from the model's own origin.
 struct Scene {
   std::vector<glm::dvec3> points;
@@ -104,6 +113,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<std::string> objects;  ///< object or group names
   std::vector<PunctualLight> lights;
+  FileAxes axes;
   std::vector<Diagnosis> diagnoses;
 };
 
@@ -111,7 +121,8 @@ struct Scene {
 struct ModelOptions {
   std::optional<std::string>
       units;  ///< m cm mm ft in; empty: metres unless that makes an impossible building
-  std::optional<std::string> upAxis;  ///< y or z; empty: z for OBJ, y for glTF
+  std::optional<std::string>
+      upAxis;  ///< y or z; empty: y for glTF, judged by the file's head and geometry for OBJ
   struct Subdivide {
     std::string object;  ///< glob over object names
     std::string scheme;  ///< catmark loop bilinear none
@@ -119,6 +130,10 @@ struct ModelOptions {
   };
   std::vector<Subdivide> subdivide;
 };
+
+/// Objects whose names begin so are markers of an earlier inspection (`clerestory inspect -o`), which are
+/// left out.
+inline constexpr std::string_view markerObject = "diagnosis G2";
 
 /// Reads `file` by its ending (.obj, .gltf, .glb). Throws InputError where it cannot be understood.
 Scene readModel(const std::filesystem::path& file, const ModelOptions& options);
