@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From a clean model to a building, in the order of its questions: which air, which rooms, which sensors.
+#include <algorithm>
+
 #include <geometry/building.hpp>
 #include <geometry/rays.hpp>
 
@@ -10,6 +12,33 @@
 
 namespace clerestory {
 
+namespace {
+
+void cutAtCrossings(Building& building) {
+  CleanModel& model = building.model;
+  const std::size_t before = model.pieces.size();
+  const std::vector<std::uint32_t> surfaceOf = model.pieces.surface;
+  std::vector<Crossing> crossings;
+  const std::vector<std::uint32_t> wholeOf =
+      cutWhereCrossed(model.pieces, model.materials, building.sideDomain, crossings);
+  if (wholeOf.size() != before) followCut(building, before, wholeOf);
+  if (crossings.empty()) return;
+  const auto objectOf = [&](const Crossing& crossing) {
+    return model.surfaces[surfaceOf[crossing.piece]].name;
+  };
+  for (const Crossing& crossing : crossings)
+    building.marks.push_back({"G220", objectOf(crossing), crossing.place_m});
+  const auto longest =
+      std::max_element(crossings.begin(), crossings.end(),
+                       [](const Crossing& a, const Crossing& b) { return a.length_m < b.length_m; });
+  addDiagnosis(
+      building.diagnoses,
+      {"G220", "surfaces run through each other and were cut where they cross; the longest line is named",
+       "object \"" + objectOf(*longest) + "\"", crossings.size(), longest->place_m});
+}
+
+}  // namespace
+
 Building makeBuilding(CleanModel model, const Study& study) {
   Building building;
   building.model = std::move(model);
@@ -19,6 +48,7 @@ Building makeBuilding(CleanModel model, const Study& study) {
   cutAtPanes(building.model.pieces, building.model.materials);
   placeLuminaires(building, study);
   findDomains(building);
+  cutAtCrossings(building);
   RayScene rays(building.model, building.innerGlass);
   const std::vector<RoomAir> airs = airOfRooms(building, rays);
   if (cutAtDoorways(building, airs)) rays = RayScene(building.model, building.innerGlass);

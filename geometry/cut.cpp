@@ -17,6 +17,10 @@ constexpr double frameReach_m = 0.15;  // between a pane and its reveal stands a
 constexpr double wallReach_m = 0.005;  // a wall that ends a little above the floor
 constexpr double doorReach_m = 0.02;   // a door's frame stands in its cut
 constexpr double overlapMin_m = 0.005;
+constexpr double crossingLeast_m = 0.1;   // length of the line along which two surfaces cross
+constexpr double crossingDepth_m = 0.03;  // on either side of both
+constexpr double partitionLeast_m = 0.6;  // length and height of what stands on a surface and parts it
+constexpr double parallelLeast = 0.95;    // cosine of the angle between planes
 
 /// A polygon that others are cut at, in its plane.
 struct Cutter {
@@ -116,6 +120,76 @@ std::vector<std::vector<glm::dvec3>> cutByAll(const std::vector<glm::dvec3>& who
     }
   }
   return parts;
+}
+
+/// How far the polygon reaches on either side of the other one's plane: before it and behind it. [m]
+std::pair<double, double> reachOf(const Cutter& polygon, const Cutter& plane) {
+  double before_m = 0.0;
+  double behind_m = 0.0;
+  for (const glm::dvec3& corner : polygon.corners) {
+    const double height = glm::dot(corner - plane.corners[0], plane.normal);
+    before_m = std::max(before_m, height);
+    behind_m = std::max(behind_m, -height);
+  }
+  return {before_m, behind_m};
+}
+
+/// Length along which the other polygon, grown by its reach, touches this one. [m]
+double lineOfContact(const Cutter& polygon, const Cutter& other) {
+  const Parts halves = partPolygon(polygon.corners, other);
+  if (halves.cut.size() < 2) return 0.0;
+  return overlap(other, halves.cut.front(), halves.cut.back());
+}
+
+glm::dvec3 middleOfContact(const Cutter& polygon, const Cutter& other) {
+  const Parts halves = partPolygon(polygon.corners, other);
+  const glm::dvec3 low = glm::max(glm::min(halves.cut.front(), halves.cut.back()), other.low);
+  const glm::dvec3 high = glm::min(glm::max(halves.cut.front(), halves.cut.back()), other.high);
+  return 0.5 * (low + high);
+}
+
+/// Whether both reach through each other by more than inaccurate drawing does.
+bool runsThrough(const Cutter& a, const Cutter& b) {
+  const auto [before, behind] = reachOf(a, b);
+  const auto [otherBefore, otherBehind] = reachOf(b, a);
+  return std::min(std::min(before, behind), std::min(otherBefore, otherBehind)) >= crossingDepth_m;
+}
+
+/// Whether light on the two sides of `other` differs on `polygon`: it runs through or stands on it.
+bool isMetBy(const Cutter& polygon, const Cutter& other, double length_m) {
+  const auto [before, behind] = reachOf(polygon, other);
+  if (std::min(before, behind) < crossingDepth_m) return false;
+  const auto [otherBefore, otherBehind] = reachOf(other, polygon);
+  return std::min(otherBefore, otherBehind) >= crossingDepth_m ||
+         (length_m >= partitionLeast_m && std::max(otherBefore, otherBehind) >= partitionLeast_m);
+}
+
+bool shareAir(const std::vector<std::int32_t>& sideDomain, std::uint32_t a, std::uint32_t b) {
+  for (const std::uint32_t side : {2 * a, 2 * a + 1}) {
+    const std::int32_t domain = sideDomain[side];
+    if (domain >= 0 && (domain == sideDomain[2 * b] || domain == sideDomain[2 * b + 1])) return true;
+  }
+  return false;
+}
+
+/// Calls `visit` with each pair whose boxes meet, of polygons that are longer than a line that counts.
+template <class Visit>
+void forEachPairThatMeets(const std::vector<Cutter>& all, const Visit& visit) {
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    if (glm::length(all[i].high - all[i].low) >= crossingLeast_m) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return all[a].low.x != all[b].low.x ? all[a].low.x < all[b].low.x : a < b;
+  });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Cutter& a = all[order[i]];
+    for (std::size_t j = i + 1; j < order.size() && all[order[j]].low.x <= a.high.x; ++j) {
+      const Cutter& b = all[order[j]];
+      if (a.low.y <= b.high.y && b.low.y <= a.high.y && a.low.z <= b.high.z && b.low.z <= a.high.z)
+        visit(order[i], order[j]);
+    }
+  }
 }
 
 /// Cuts each piece at the cutters that `cuttersOf` gives for it. The canonical order is kept. Returns the
@@ -220,6 +294,48 @@ std::vector<std::uint32_t> cutUpright(Pieces& pieces, const std::vector<Material
     }
     return chosen;
   });
+}
+
+std::vector<std::uint32_t> cutWhereCrossed(Pieces& pieces, const std::vector<Material>& materials,
+                                           const std::vector<std::int32_t>& sideDomain,
+                                           std::vector<Crossing>& crossings) {
+  std::vector<Cutter> all;
+  for (std::uint32_t piece = 0; piece < pieces.size(); ++piece)
+    all.push_back(cutterOf(pieces, piece, wallReach_m));
+  std::vector<std::vector<const Cutter*>> cuttersOf(pieces.size());
+  const auto tryCut = [&](std::uint32_t piece, std::uint32_t other) {
+    const double length_m = lineOfContact(all[piece], all[other]);
+    if (length_m < crossingLeast_m || !isMetBy(all[piece], all[other], length_m)) return;
+    cuttersOf[piece].push_back(&all[other]);
+    if (!runsThrough(all[piece], all[other])) return;
+    crossings.push_back({piece, middleOfContact(all[piece], all[other]), length_m});
+  };
+  forEachPairThatMeets(all, [&](std::uint32_t a, std::uint32_t b) {
+    const bool isGlass = materials[pieces.material[a]].glazing || materials[pieces.material[b]].glazing;
+    if (isGlass || !shareAir(sideDomain, a, b)) return;
+    if (std::abs(glm::dot(all[a].normal, all[b].normal)) > parallelLeast) return;
+    tryCut(a, b);
+    tryCut(b, a);
+  });
+  return cutPieces(pieces, [&](std::uint32_t piece) -> const std::vector<const Cutter*>& {
+    std::sort(cuttersOf[piece].begin(), cuttersOf[piece].end());  // by number
+    return cuttersOf[piece];
+  });
+}
+
+void followCut(Building& building, std::size_t before, std::span<const std::uint32_t> wholeOf) {
+  std::vector<std::uint32_t> partOf(before);  // glass is not cut: its only part
+  std::vector<std::int32_t> sideDomain;
+  std::vector<bool> innerGlass;
+  for (std::uint32_t piece = 0; piece < wholeOf.size(); ++piece) {
+    partOf[wholeOf[piece]] = piece;
+    sideDomain.push_back(building.sideDomain[2 * wholeOf[piece]]);
+    sideDomain.push_back(building.sideDomain[2 * wholeOf[piece] + 1]);
+    innerGlass.push_back(building.innerGlass[wholeOf[piece]]);
+  }
+  building.sideDomain = std::move(sideDomain);
+  building.innerGlass = std::move(innerGlass);
+  for (Portal& portal : building.portals) portal.piece = partOf[portal.piece];
 }
 
 }  // namespace clerestory

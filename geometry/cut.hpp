@@ -2,6 +2,8 @@
 // Cuts surfaces where panes and walls meet them, so that none is half inside, half outside.
 #pragma once
 
+#include <span>
+
 #include <geometry/building.hpp>
 
 namespace clerestory {
@@ -26,5 +28,23 @@ struct UprightCut {
 std::vector<std::uint32_t> cutUpright(Pieces& pieces, const std::vector<Material>& materials,
                                       const std::vector<std::int32_t>& sideDomain,
                                       const std::vector<UprightCut>& cuts);
+
+/// A surface that another one runs through.
+struct Crossing {
+  std::uint32_t piece;  ///< before the cut
+  glm::dvec3 place_m;   ///< the middle of the line along which they cross
+  double length_m;
+};
+
+/// Splits opaque pieces at others of one air with them that run through them, by 3 cm at least on either
+/// side, or that stand on them as a partition does; both along 0.1 m at least. `sideDomain`: 2 × pieces. What
+/// runs through is added to `crossings`. Returns the piece that each of the new ones is a part of.
+std::vector<std::uint32_t> cutWhereCrossed(Pieces& pieces, const std::vector<Material>& materials,
+                                           const std::vector<std::int32_t>& sideDomain,
+                                           std::vector<Crossing>& crossings);
+
+/// Numbers what a building knows by piece anew after a cut: `wholeOf` as the cuts above return it, of
+/// `before` pieces.
+void followCut(Building& building, std::size_t before, std::span<const std::uint32_t> wholeOf);
 
 }  // namespace clerestory

@@ -127,19 +127,7 @@ bool cutAtDoorways(Building& building, const std::vector<RoomAir>& airs) {
   const std::vector<std::uint32_t> wholeOf =
       cutUpright(building.model.pieces, building.model.materials, building.sideDomain, cuts);
   if (wholeOf.size() == before) return false;
-
-  std::vector<std::uint32_t> partOf(before);  // glass is not cut: its only part
-  std::vector<std::int32_t> sideDomain;
-  std::vector<bool> innerGlass;
-  for (std::uint32_t piece = 0; piece < wholeOf.size(); ++piece) {
-    partOf[wholeOf[piece]] = piece;
-    sideDomain.push_back(building.sideDomain[2 * wholeOf[piece]]);
-    sideDomain.push_back(building.sideDomain[2 * wholeOf[piece] + 1]);
-    innerGlass.push_back(building.innerGlass[wholeOf[piece]]);
-  }
-  building.sideDomain = std::move(sideDomain);
-  building.innerGlass = std::move(innerGlass);
-  for (Portal& portal : building.portals) portal.piece = partOf[portal.piece];
+  followCut(building, before, wholeOf);
   return true;
 }
 
