@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 namespace clerestory {
 namespace {
@@ -191,17 +192,26 @@ class Parting {
   }
 
   Parted settle() {
+    measures_ = measure();
+    collectEdges();
     while (joinOnce()) {
     }
     dropSmall();
+    measures_ = measure();
+    collectEdges();
     Parted parted{region_, {}, count_, {}};
-    for (const Border& border : borders()) parted.openings.push_back(openingOf(border));
+    for (const auto& [regions, borders] : bordersOf_) {
+      for (const Border& border : borders) parted.openings.push_back(openingOf(border));
+    }
     parted.toWall_m = std::move(toWall_m_);
     return parted;
   }
 
  private:
+  using Pair = std::array<std::int32_t, 2>;  ///< of regions, the lower first
+
   struct Measure {
+    std::size_t cells = 0;  ///< high ones
     double area_m2 = 0.0, circle_m = 0.0;
     std::size_t outline = 0;     ///< edges around its high cells
     std::size_t floorEdges = 0;  ///< of these, where only floors differ
@@ -223,7 +233,7 @@ class Parting {
       if (at(region_[cell]) >= measures.size()) measures.resize(at(region_[cell]) + 1);
       if (!cells_.high[cell]) continue;
       Measure& own = measures[at(region_[cell])];
-      own.area_m2 += map_.cell_m() * map_.cell_m();
+      ++own.cells;
       own.circle_m = std::max(own.circle_m, toWall_m_[cell]);
       for (int way = 0; way < 4; ++way) {
         const std::uint32_t next = map_.neighbour(cell, way);
@@ -232,29 +242,79 @@ class Parting {
         if (next != none && onlyFloorsDiffer(cell, next)) ++own.floorEdges;
       }
     }
+    for (Measure& own : measures) own.area_m2 = areaOf(own.cells);
     return measures;
   }
 
-  [[nodiscard]] std::vector<Border> borders() const {
-    std::map<std::array<std::int32_t, 2>, std::vector<Edge>> edgesOf;
+  [[nodiscard]] double areaOf(std::size_t cells) const {
+    return static_cast<double>(cells) * map_.cell_m() * map_.cell_m();
+  }
+
+  /// All edges between regions, and what they are.
+  void collectEdges() {
+    edgesOf_.clear();
+    bordersOf_.clear();
     for (std::uint32_t cell = 0; cell < map_.size(); ++cell) {
       for (int way = 0; way < 2; ++way) {
         const std::uint32_t next = map_.neighbour(cell, way);
         if (next == none || region_[cell] < 0 || region_[next] < 0 || region_[cell] == region_[next])
           continue;
         const auto [low, high] = std::minmax(region_[cell], region_[next]);
-        edgesOf[{low, high}].push_back({cell, way});
+        edgesOf_[{low, high}].push_back({cell, way});
       }
     }
-    const std::vector<Measure> measures = measure();
-    std::vector<Border> result;
-    for (auto& [regions, edges] : edgesOf) {
-      const bool isOpen = measures[at(regions[0])].isOpen() || measures[at(regions[1])].isOpen();
-      for (std::vector<Edge>& cluster : clustersOf(map_, std::move(edges))) {
-        result.push_back(describe(regions, std::move(cluster), isOpen));
-      }
+    for (const auto& [regions, edges] : edgesOf_) describeAll(regions);
+  }
+
+  void describeAll(const Pair& regions) {
+    const bool isOpen = measures_[at(regions[0])].isOpen() || measures_[at(regions[1])].isOpen();
+    std::vector<Border>& borders = bordersOf_[regions];
+    borders.clear();
+    for (std::vector<Edge>& cluster : clustersOf(map_, edgesOf_.at(regions)))
+      borders.push_back(describe(regions, std::move(cluster), isOpen));
+  }
+
+  /// Makes `other` a part of `region`; what lies apart from both stays as it is.
+  void join(std::int32_t region, std::int32_t other) {
+    Measure& own = measures_[at(region)];
+    const Measure gone = std::exchange(measures_[at(other)], Measure{});
+    own.cells += gone.cells;
+    own.area_m2 = areaOf(own.cells);
+    own.circle_m = std::max(own.circle_m, gone.circle_m);
+    own.outline += gone.outline;
+    own.floorEdges += gone.floorEdges;
+    const Pair both{std::min(region, other), std::max(region, other)};
+    for (const Edge& edge : edgesOf_.at(both)) {  // counted by either, now within
+      const std::uint32_t next = map_.neighbour(edge.cell, edge.way);
+      if (!cells_.high[edge.cell] || !cells_.high[next]) continue;
+      own.outline -= 2;
+      if (onlyFloorsDiffer(edge.cell, next)) own.floorEdges -= 2;
     }
-    return result;
+    edgesOf_.erase(both);
+    bordersOf_.erase(both);
+    for (std::int32_t& cell : region_) {
+      if (cell == other) cell = region;
+    }
+    std::vector<Pair> moved;
+    std::vector<Pair> changed;
+    for (const auto& [regions, edges] : edgesOf_) {
+      if (regions[0] == other || regions[1] == other) moved.push_back(regions);
+      if (regions[0] == region || regions[1] == region) changed.push_back(regions);
+    }
+    for (const Pair& regions : moved) {
+      const std::int32_t third = regions[0] == other ? regions[1] : regions[0];
+      const Pair pair{std::min(region, third), std::max(region, third)};
+      std::vector<Edge>& edges = edgesOf_[pair];
+      if (edges.empty()) changed.push_back(pair);
+      const std::vector<Edge>& more = edgesOf_.at(regions);
+      edges.insert(edges.end(), more.begin(), more.end());
+      std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+        return a.cell != b.cell ? a.cell < b.cell : a.way < b.way;
+      });
+      edgesOf_.erase(regions);
+      bordersOf_.erase(regions);
+    }
+    for (const Pair& regions : changed) describeAll(regions);
   }
 
   [[nodiscard]] Border describe(const std::array<std::int32_t, 2>& regions, std::vector<Edge> edges,
@@ -284,39 +344,37 @@ class Parting {
   /// along its floor's edge, else the two with the widest border that does not part them. False where nothing
   /// is left to join.
   bool joinOnce() {
-    const std::vector<Measure> measures = measure();
-    const std::vector<Border> all = borders();
-    const Border* chosen = bestBorderOf(all, measures, [](const Measure& own) { return !own.isRoom(); });
-    if (chosen == nullptr)
-      chosen = bestBorderOf(all, measures, [](const Measure& own) { return own.isOpen(); });
-    for (const Border& border : all) {
-      if (chosen != nullptr) break;
-      if (!border.parts) chosen = &border;
+    const Border* chosen = bestBorder([](const Measure& own) { return !own.isRoom(); });
+    if (chosen == nullptr) chosen = bestBorder([](const Measure& own) { return own.isOpen(); });
+    for (const auto& [regions, borders] : bordersOf_) {
+      for (const Border& border : borders) {
+        if (chosen == nullptr && !border.parts) chosen = &border;
+      }
     }
     if (chosen == nullptr) return false;
-    for (std::int32_t& region : region_) {
-      if (region == chosen->regions[1]) region = chosen->regions[0];
-    }
+    const Pair regions = chosen->regions;
+    join(regions[0], regions[1]);
     return true;
   }
 
   /// The border over which the smallest of the regions that `mustJoin` joins: rather to one of its own floor,
   /// then over the widest. Null where there is none.
   template <class MustJoin>
-  static const Border* bestBorderOf(const std::vector<Border>& borders, const std::vector<Measure>& measures,
-                                    const MustJoin& mustJoin) {
+  [[nodiscard]] const Border* bestBorder(const MustJoin& mustJoin) const {
     const Border* best = nullptr;
     double leastArea_m2 = std::numeric_limits<double>::infinity();
-    for (const Border& border : borders) {
-      for (const std::int32_t region : border.regions) {
-        const Measure& own = measures[at(region)];
-        if (!mustJoin(own) || own.area_m2 > leastArea_m2) continue;
-        const bool isBetter =
-            best == nullptr || own.area_m2 < leastArea_m2 ||
-            (border.oneFloor != best->oneFloor ? border.oneFloor : border.width_m > best->width_m);
-        if (!isBetter) continue;
-        best = &border;
-        leastArea_m2 = own.area_m2;
+    for (const auto& [regions, borders] : bordersOf_) {
+      for (const Border& border : borders) {
+        for (const std::int32_t region : border.regions) {
+          const Measure& own = measures_[at(region)];
+          if (!mustJoin(own) || own.area_m2 > leastArea_m2) continue;
+          const bool isBetter =
+              best == nullptr || own.area_m2 < leastArea_m2 ||
+              (border.oneFloor != best->oneFloor ? border.oneFloor : border.width_m > best->width_m);
+          if (!isBetter) continue;
+          best = &border;
+          leastArea_m2 = own.area_m2;
+        }
       }
     }
     return best;
@@ -357,6 +415,9 @@ class Parting {
   std::vector<std::int32_t> floor_;  // #cells: surface, carried on where none is met; -1 where it is not high
   std::vector<std::int32_t> region_;  // #cells; -1
   std::int32_t count_ = 0;
+  std::vector<Measure> measures_;                  // by region
+  std::map<Pair, std::vector<Edge>> edgesOf_;      // in the order of cells
+  std::map<Pair, std::vector<Border>> bordersOf_;  // the same pairs
 };
 
 }  // namespace
