@@ -65,14 +65,18 @@ Study readInput(const InputArguments& arguments) {
   return study;
 }
 
-CleanModel readCleanModel(const Study& study, std::vector<Diagnosis>& diagnoses,
-                          const std::function<void(const std::string& step)>& begin) {
+Scene readScene(const Study& study, std::vector<Diagnosis>& diagnoses,
+                const std::function<void(const std::string& step)>& begin) {
   begin("reading the model");
   Scene scene = readModel(study.modelFile, study.model);
   applyMaterialRules(study, scene);
   addSurroundings(study, scene);
   addAll(scene.diagnoses, diagnoses);
+  return scene;
+}
 
+CleanModel cleanModel(const Scene& scene, std::vector<Diagnosis>& diagnoses,
+                      const std::function<void(const std::string& step)>& begin) {
   begin("cleaning the model");
   CleanModel model = cleanScene(scene);
   addAll(model.diagnoses, diagnoses);
@@ -81,7 +85,7 @@ CleanModel readCleanModel(const Study& study, std::vector<Diagnosis>& diagnoses,
 
 Building readBuilding(const Study& study, std::vector<Diagnosis>& diagnoses,
                       const std::function<void(const std::string& step)>& begin) {
-  CleanModel model = readCleanModel(study, diagnoses, begin);
+  CleanModel model = cleanModel(readScene(study, diagnoses, begin), diagnoses, begin);
   begin("finding rooms");
   Building building = makeBuilding(std::move(model), study);
   addAll(building.diagnoses, diagnoses);

@@ -28,12 +28,16 @@ void addInputArguments(CLI::App& command, InputArguments& arguments);
 /// The study in the named file, or that of the named model alone; the command line stands over both.
 Study readInput(const InputArguments& arguments);
 
-/// Reads and cleans the study's model. `begin` is told of each step before it begins; what the steps have to
-/// say is added to `diagnoses`.
-CleanModel readCleanModel(const Study& study, std::vector<Diagnosis>& diagnoses,
-                          const std::function<void(const std::string& step)>& begin);
+/// Reads the study's model with its materials and surroundings. `begin` and `diagnoses` as below.
+Scene readScene(const Study& study, std::vector<Diagnosis>& diagnoses,
+                const std::function<void(const std::string& step)>& begin);
 
-/// The same, and finds its rooms.
+/// Cleans it likewise.
+CleanModel cleanModel(const Scene& scene, std::vector<Diagnosis>& diagnoses,
+                      const std::function<void(const std::string& step)>& begin);
+
+/// Reads and cleans the study's model and finds its rooms. `begin` is told of each step before it begins;
+/// what the steps have to say is added to `diagnoses`.
 Building readBuilding(const Study& study, std::vector<Diagnosis>& diagnoses,
                       const std::function<void(const std::string& step)>& begin);
 

@@ -14,6 +14,7 @@
 #include <sstream>
 #include <system_error>
 
+#include <geometry/faults.hpp>
 #include <report/modelfile.hpp>
 #include <report/storeyplan.hpp>
 
@@ -81,14 +82,14 @@ class Steps {
   std::chrono::steady_clock::time_point begun_;
 };
 
-/// A count of the clean-up: its key in JSON and its words.
-struct CleanupRow {
+/// A count: its key in JSON and its words.
+struct CountRow {
   const char* key;
   const char* words;
   std::size_t count;
 };
 
-std::vector<CleanupRow> cleanupRows(const CleanupCounts& counts) {
+std::vector<CountRow> cleanupRows(const CleanupCounts& counts) {
   return {{"points_read", "points read", counts.pointsRead},
           {"faces_read", "faces read", counts.facesRead},
           {"cages", "subdivision cages", counts.cages},
@@ -100,6 +101,21 @@ std::vector<CleanupRow> cleanupRows(const CleanupCounts& counts) {
           {"pane_sheets_dropped", "further sheets of panes removed", counts.paneSheetsDropped},
           {"polygons", "planar polygons after merging", counts.polygons},
           {"pieces", "convex pieces of these", counts.pieces}};
+}
+
+std::vector<CountRow> faultRows(const DrawnFaults& faults) {
+  return {{"repeated_points", "points drawn again", faults.repeatedPoints},
+          {"faces_without_area", "faces without area", faults.facesWithoutArea},
+          {"repeated_faces", "faces drawn again", faults.repeatedFaces},
+          {"non_manifold_edges", "edges of more than two faces", faults.nonManifoldEdges},
+          {"edges_wound_apart", "edges of two faces that look to different sides", faults.edgesWoundApart},
+          {"t_junctions", "points within an edge of another face (T-junctions)", faults.tJunctions}};
+}
+
+std::string countsText(const std::vector<CountRow>& rows) {
+  std::ostringstream text;
+  for (const CountRow& row : rows) text << std::setw(12) << row.count << "  " << row.words << '\n';
+  return text.str();
 }
 
 /// Panes that light a room from outside.
@@ -131,8 +147,8 @@ Json vectorJson(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
-Json inspectionJson(const Building& building, const Totals& totals, const std::vector<Diagnosis>& diagnoses,
-                    const Steps& steps) {
+Json inspectionJson(const Building& building, const DrawnFaults& faults, const Totals& totals,
+                    const std::vector<Diagnosis>& diagnoses, const Steps& steps) {
   Json json;
   const FileAxes& axes = building.model.axes;
   json["units"] = axes.units;
@@ -140,9 +156,10 @@ Json inspectionJson(const Building& building, const Totals& totals, const std::v
   json["up"] = axes.upAxis;
   json["up_is_guessed"] = axes.upAxisIsGuessed;
   json["extent_m"] = {{"lowest", vectorJson(totals.lowest)}, {"highest", vectorJson(totals.highest)}};
-  for (const CleanupRow& row : cleanupRows(building.model.counts)) {
+  for (const CountRow& row : cleanupRows(building.model.counts)) {
     json["cleanup"][row.key] = row.count;
   }
+  for (const CountRow& row : faultRows(faults)) json["faults_as_drawn"][row.key] = row.count;
   json["sizes"] = Json::array();
   for (const StepSize& size : sizesOf(building)) {
     json["sizes"].push_back(
@@ -288,8 +305,9 @@ std::string stepsText(const Steps& steps) {
   return table.text();
 }
 
-std::string inspectionText(const Study& study, const Building& building, const Totals& totals,
-                           const std::vector<Diagnosis>& diagnoses, const Steps& steps) {
+std::string inspectionText(const Study& study, const Building& building, const DrawnFaults& faults,
+                           const Totals& totals, const std::vector<Diagnosis>& diagnoses,
+                           const Steps& steps) {
   const glm::dvec3 size = totals.highest - totals.lowest;
   std::string text = printable(study.modelFile.string()) + ": " + number(size.x, 2) + " x " +
                      number(size.y, 2) + " x " + number(size.z, 2) + " m, from (" +
@@ -298,12 +316,9 @@ std::string inspectionText(const Study& study, const Building& building, const T
   const FileAxes& axes = building.model.axes;
   text += "Units: " + axes.units + (axes.unitsAreGuessed ? " (guessed; --units states it)" : "") +
           "; up: " + axes.upAxis + (axes.upAxisIsGuessed ? " (guessed; --up states it)" : "") + '\n';
+  text += "\nFaults as drawn\n" + countsText(faultRows(faults));
   text += "\nWhat was read, and what became of it\n";
-  for (const CleanupRow& row : cleanupRows(building.model.counts)) {
-    std::ostringstream line;
-    line << std::setw(12) << row.count << "  " << row.words << '\n';
-    text += line.str();
-  }
+  text += countsText(cleanupRows(building.model.counts));
   text += "\nSize\n" + sizesText(building);
   text += "\nMaterials\n" + materialsText(building, totals);
   text += "\nAir that is connected without crossing glass\n" + airText(building);
@@ -354,8 +369,11 @@ void runInspect(const InputArguments& arguments, bool json,
   study.grids.clear();  // a grid that finds no room would end the inspection that is to tell why
   std::vector<Diagnosis> diagnoses;
   Steps steps;
-  CleanModel model =
-      readCleanModel(study, diagnoses, [&steps](const std::string& step) { steps.begin(step); });
+  const auto begin = [&steps](const std::string& step) { steps.begin(step); };
+  const Scene scene = readScene(study, diagnoses, begin);
+  steps.begin("counting faults");
+  const DrawnFaults faults = countFaults(scene);
+  CleanModel model = cleanModel(scene, diagnoses, begin);
   const bool isWritten = std::any_of(outputs.begin(), outputs.end(), isModelFile);
   const CleanModel repaired = isWritten ? model : CleanModel{};
   steps.begin("finding rooms");
@@ -366,11 +384,11 @@ void runInspect(const InputArguments& arguments, bool json,
   for (const std::filesystem::path& output : outputs) writeOutput(output, study, repaired, building);
   if (json) {
     // Names come from outside and may be no UTF-8.
-    printResult(inspectionJson(building, totals, diagnoses, steps)
+    printResult(inspectionJson(building, faults, totals, diagnoses, steps)
                     .dump(2, ' ', false, Json::error_handler_t::replace) +
                 "\n");
   } else {
-    printResult(inspectionText(study, building, totals, diagnoses, steps));
+    printResult(inspectionText(study, building, faults, totals, diagnoses, steps));
   }
 }
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <geometry/faults.hpp>
+
 #include "../import/tempfolder.hpp"
 #include "../scenes.hpp"
 
@@ -71,6 +73,25 @@ TEST(FurtherModels, DuplexHasFourteenRooms) {
   EXPECT_EQ(building.rooms.size(), 14U);
   EXPECT_EQ(building.portals.size(), 24U);
   for (const Portal& portal : building.portals) EXPECT_GE(portal.room, 0);
+}
+
+// The folder's README counts the same, but for edges of the studio (4,338 there) and T-junctions, which have
+// no one definition.
+TEST(FurtherModels, FaultsAreCountedAlike) {
+  const auto faultsOf = [](const std::string& file) {
+    return countFaults(readModel(std::string(CLERESTORY_MODELS) + "/" + file, {}));
+  };
+  const DrawnFaults studio = faultsOf("room-sh3d-Studio/Studio.obj");
+  EXPECT_EQ(studio.repeatedFaces, 63U);
+  EXPECT_EQ(studio.facesWithoutArea, 125U);
+  EXPECT_NEAR(static_cast<double>(studio.nonManifoldEdges), 4338.0, 0.01 * 4338.0);
+  const DrawnFaults duplex = faultsOf("room-duplex-ifc/duplex_webifc.obj");
+  EXPECT_EQ(duplex.repeatedPoints, 47122U);
+  EXPECT_EQ(duplex.edgesWoundApart, 4409U);
+  const DrawnFaults office = faultsOf("room-lbnl-openplan/frads_openplan.obj");
+  EXPECT_EQ(office.repeatedPoints, 35148U);
+  EXPECT_EQ(office.edgesWoundApart, 843U);
+  EXPECT_EQ(faultsOf("room-hotel-glb/hotel-room.glb").nonManifoldEdges, 4919U);
 }
 
 // Not from what the files say of themselves at their head.
