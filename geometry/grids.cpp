@@ -2,6 +2,7 @@
 // Sensor grids: points over a room's floor, within an outline, or from a list.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <optional>
 
@@ -11,6 +12,9 @@
 
 namespace clerestory {
 namespace {
+
+/// Sensors of a whole study: some hundred bytes each while it runs, and as many in the table.
+constexpr double sensorsMost = 5e6;
 
 struct Rectangle {
   glm::dvec2 low{1e300}, high{-1e300};
@@ -74,10 +78,24 @@ std::optional<double> floorAt(const std::vector<FloorPart>& parts, const glm::dv
   return height_m;
 }
 
-/// The centred points of a rectangle: n = floor(length / spacing) of them each way.
-std::vector<glm::dvec2> pointsOf(const Rectangle& area, double spacing_m) {
+/// Throws InputError where a grid would bring a study above its number of sensors.
+void expectRoomFor(const Building& building, const std::string& grid, double sensors) {
+  for (const SensorGrid& other : building.grids) sensors += static_cast<double>(other.points.size());
+  if (sensors <= sensorsMost) return;
+  char count[32];
+  std::snprintf(count, sizeof count, "%.3g", 1e-6 * sensors);
+  throw InputError("the grid \"" + grid + "\" would make " + count +
+                   " million sensors of the study, which may have 5 million: make its spacing larger or its "
+                   "outline smaller");
+}
+
+/// The centred points of the rectangle around a grid: n = floor(length / spacing) of them each way.
+std::vector<glm::dvec2> pointsOf(const Building& building, const GridSettings& settings,
+                                 const Rectangle& area) {
+  const double spacing_m = settings.spacing_m;
   const glm::dvec2 size = area.high - area.low;
   const glm::dvec2 count = glm::max(glm::floor(size / spacing_m + 1e-6), glm::dvec2(1.0));
+  expectRoomFor(building, settings.name, count.x * count.y);
   const glm::dvec2 first = area.low + 0.5 * (size - (count - 1.0) * spacing_m);
   std::vector<glm::dvec2> points;
   for (double row = 0; row < count.y; ++row) {
@@ -111,7 +129,7 @@ SensorGrid gridOverRoom(const Building& building, const GridSettings& settings, 
   bounds.low += settings.inset_m;
   bounds.high -= settings.inset_m;
   if (bounds.low.x >= bounds.high.x || bounds.low.y >= bounds.high.y) return grid;
-  for (const glm::dvec2& plan : pointsOf(bounds, settings.spacing_m)) {
+  for (const glm::dvec2& plan : pointsOf(building, settings, bounds)) {
     const std::optional<double> floor_m = floorAt(floor, plan);
     if (!floor_m) continue;
     const glm::dvec3 point(plan, *floor_m + settings.height_m);
@@ -127,7 +145,7 @@ SensorGrid gridWithinOutline(const Building& building, const GridSettings& setti
   SensorGrid grid{settings.name, -1, {}, {}, settings.spacing_m};
   grid.room = roomBelow(building, 0.5 * (bounds.low + bounds.high), std::numeric_limits<double>::infinity());
   const double floor_m = grid.room < 0 ? 0.0 : building.rooms[static_cast<std::size_t>(grid.room)].floor_m;
-  for (const glm::dvec2& plan : pointsOf(bounds, settings.spacing_m)) {
+  for (const glm::dvec2& plan : pointsOf(building, settings, bounds)) {
     if (!isWithin(plan, settings.polygon_m)) continue;
     if (settings.inset_m > 0.0 && distanceToOutline(plan, settings.polygon_m) < settings.inset_m) continue;
     grid.points.emplace_back(plan, floor_m + settings.height_m);
@@ -137,6 +155,7 @@ SensorGrid gridWithinOutline(const Building& building, const GridSettings& setti
 }
 
 SensorGrid gridOfPoints(const Building& building, const GridSettings& settings) {
+  expectRoomFor(building, settings.name, static_cast<double>(settings.points.size()));
   SensorGrid grid{settings.name, -1, {}, {}, settings.spacing_m};
   for (const auto& row : settings.points) {
     grid.points.emplace_back(row[0], row[1], row[2]);

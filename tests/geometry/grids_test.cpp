@@ -170,5 +170,20 @@ TEST(Grids, NoSensorIsAnErrorThatSaysWhatToDo) {
   for (const char* word : {"Desks", "Kitchen", "inspect"}) EXPECT_TRUE(contains(noRoom, word)) << noRoom;
 }
 
+// A millimetre over 12 m2, alone or as the second grid, and an outline as wide as a country.
+TEST(Grids, TooManySensorsAreRefusedBeforeTheyAreMade) {
+  GridSettings dense = roomGrid(0.001);
+  GridSettings wide = roomGrid(0.25);
+  wide.polygon_m = {{0, 0}, {1e6, 0}, {1e6, 1e6}, {0, 1e6}};
+  for (const std::vector<GridSettings>& grids :
+       {std::vector{dense}, std::vector{wide}, std::vector{roomGrid(0.5), dense}}) {
+    Study study;
+    study.grids = grids;
+    const std::string message = inputErrorOf([&] { buildingOf(roomDrawing().scene, study); });
+    for (const char* word : {"Desks", "million sensors", "spacing"})
+      EXPECT_TRUE(contains(message, word)) << message;
+  }
+}
+
 }  // namespace
 }  // namespace clerestory
