@@ -36,7 +36,7 @@ Tuning tuningFor(double accuracy, const SolveOptions& options) {
   tuning.sensors.rays = static_cast<std::uint32_t>(std::clamp(128.0 * finer, 32.0, 4096.0));
   tuning.sensors.deviationMost = static_cast<float>(0.3 * accuracy);
   tuning.views = {{96.0F, 2.0F}, 64};
-  tuning.solverError = 0.3 * accuracy;
+  tuning.solverError = 0.01 + 0.5 * accuracy;
   return tuning;
 }
 
