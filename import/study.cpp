@@ -347,12 +347,12 @@ void readReport(const TomlSection& file, Study& study) {
     return;
   }
   section->allowOnly({"norms"});
-  std::string norms;
   for (const std::string& norm : section->texts("norms")) {
-    norms += (norms.empty() ? "" : ", ") + cleanName(norm);
-  }
-  if (!norms.empty()) {
-    study.assumptions.push_back("The norms asked for (" + norms + ") are not judged by this version.");
+    if (norm != "en17037" && norm != "leed") {
+      section->fail("norms",
+                    "norm \"" + cleanName(norm) + "\" is not known; there are \"en17037\" and \"leed\"");
+    }
+    study.norms.push_back(norm);
   }
 }
 

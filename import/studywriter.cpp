@@ -215,6 +215,12 @@ std::string studyToml(const Study& study) {
   }
   out.section("[accuracy]");
   out.line("target", inQuotes(accuracyText(study.accuracy)));
+  if (!study.norms.empty()) {
+    std::string norms;
+    for (const std::string& norm : study.norms) norms += (norms.empty() ? "" : ", ") + inQuotes(norm);
+    out.section("[report]");
+    out.line("norms", "[" + norms + "]");
+  }
   return out.take();
 }
 

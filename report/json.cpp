@@ -11,9 +11,12 @@
 
 #include "escape.hpp"
 #include "folder.hpp"
+#include "luminairerows.hpp"
 #include "metrics.hpp"
+#include "norms.hpp"
 #include "numbers.hpp"
 #include "sha256.hpp"
+#include "tables.hpp"
 
 namespace clerestory {
 namespace {
@@ -43,8 +46,14 @@ Json inputs(const ReportInput& input) {
   const std::optional<std::string> model = sha256OfFile(input.study.modelFile);
   Study named = input.study;
   named.modelFileAsWritten = modelName(input.study);  // the same study from whichever folder it was asked for
+  Json points = Json::array();                        // as they were read, whatever the file's format
+  for (const GridSettings& grid : input.study.grids) {
+    if (grid.pointsFile.empty()) continue;
+    points.push_back({{"file", validUtf8(grid.pointsFile)}, {"sha256", sha256(pointsCsv(grid.points))}});
+  }
   return {{"model", {{"file", modelName(input.study)}, {"sha256", model ? Json(*model) : Json(nullptr)}}},
-          {"study", {{"sha256", sha256(studyToml(named))}}}};
+          {"study", {{"sha256", sha256(studyToml(named))}}},
+          {"points", points}};
 }
 
 Json options(const Study& study) {
@@ -86,6 +95,39 @@ Json cleanup(const CleanupCounts& counts) {
           {"pieces", counts.pieces}};
 }
 
+/// What the norms that the study asks for say to a grid; a reason where they cannot be judged.
+Json normsJson(const ReportInput& input, std::size_t g) {
+  const GridValues& grid = input.solution.grids.at(g);
+  Json norms = Json::object();
+  if (isAsked(input.study, "en17037")) {
+    const auto level = en17037Level(grid, input.study);
+    norms["en17037"] = level ? Json{{"level", *level}, {"passes", *level != "none"}}
+                             : Json{{"not_judged", whyNoEn17037(input.study)}};
+  }
+  if (isAsked(input.study, "leed")) {
+    const auto hour = leedHourOf(grid, input.study);
+    norms["leed_option_2"] = hour ? Json{{"share_300_to_3000_lx_pct", number(hour->share_pct)},
+                                         {"points_v4_if_other_hour_alike", hour->pointsV4},
+                                         {"points_v4_1_if_other_hour_alike", hour->pointsV41}}
+                                  : Json{{"not_judged", whyNoLeedHour(input.study)}};
+  }
+  return norms;
+}
+
+Json luminairesJson(const ReportInput& input) {
+  Json list = Json::array();
+  for (const LuminaireRow& row : luminaireRows(input)) {
+    list.push_back({{"name", validUtf8(row.name)},
+                    {"file", row.file.empty() ? Json(nullptr) : Json(validUtf8(row.file))},
+                    {"sha256", row.sha256.empty() ? Json(nullptr) : Json(row.sha256)},
+                    {"count", row.count},
+                    {"flux_each_lm", number(row.flux_lm)},
+                    {"power_each_w", row.power_w > 0.0 ? number(row.power_w) : Json(nullptr)},
+                    {"factor", number(row.factor)}});
+  }
+  return list;
+}
+
 Json gridJson(const ReportInput& input, std::size_t g) {
   const GridMetrics m = metricsOf(input.solution.grids.at(g), input.study.sky);
   Json grid = {{"name", validUtf8(input.building.grids[g].name)},
@@ -98,6 +140,7 @@ Json gridJson(const ReportInput& input, std::size_t g) {
     grid["daylight_factor_pct"] = distribution(*m.daylightFactor_pct);
     grid["share_of_sensors_above_2_pct"] = number(m.shareAbove2_pct);
   }
+  if (!input.study.norms.empty()) grid["norms"] = normsJson(input, g);
   grid["error_estimate_mean_pct"] = number(m.meanErrorEstimate_pct);
   grid["error_estimate_95th_pct"] = number(m.p95ErrorEstimate_pct);
   return grid;
@@ -122,6 +165,8 @@ Json rooms(const ReportInput& input) {
       entry["average_daylight_factor_formula_pct"] =
           number(input.solution.rooms[r].averageDaylightFactor_pct);
       entry["sunlight_21_march_h"] = number(input.solution.rooms[r].sunlight_h);
+      if (isAsked(input.study, "en17037"))
+        entry["sunlight_level_en17037"] = sunlightLevel(input.solution.rooms[r].sunlight_h);
     }
     entry["grids"] = gridsJson(input, static_cast<std::int32_t>(r));
     list.push_back(entry);
@@ -228,6 +273,7 @@ std::string studyJson(const ReportInput& input) {
                      {"grids_outside_rooms", gridsJson(input, -1)},
                      {"surfaces", surfaces(input)},
                      {"materials", materials(building.model)},
+                     {"luminaires", luminairesJson(input)},
                      {"light_domains", building.domains.size()},
                      {"portals", building.portals.size()},
                      {"solution",

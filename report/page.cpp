@@ -9,7 +9,9 @@
 
 #include "escape.hpp"
 #include "json.hpp"
+#include "luminairerows.hpp"
 #include "metrics.hpp"
+#include "norms.hpp"
 #include "numbers.hpp"
 #include "page_parts.hpp"
 #include "page_style.hpp"
@@ -296,7 +298,7 @@ std::string roomSections(const Page& page) {
     html += "<p class=\"lead\">" + fixedNumber(room.floorArea_m2, 1) + " m² of floor, " +
             fixedNumber(room.volume_m3, 1) + " m³ of air.</p>\n";
     for (const std::size_t g : gridsOfRoom(building, index)) html += gridHtml(page, g);
-    html += surfaceTable(page, index) + "</section>\n";
+    html += roomChecksHtml(page.input, r) + surfaceTable(page, index) + "</section>\n";
   }
   const std::vector<std::size_t> outside = gridsOfRoom(building, -1);
   const std::string surfaces = surfaceTable(page, -1);
@@ -304,6 +306,18 @@ std::string roomSections(const Page& page) {
   html += sectionOpening("outside", "Outside");
   for (const std::size_t g : outside) html += gridHtml(page, g);
   return html + surfaces + "</section>\n";
+}
+
+/// Norms that are asked for and cannot be judged, each with the reason.
+std::string unjudgedNorms(const Study& study) {
+  std::string html;
+  const auto add = [&](const std::string& norm, const std::string& name, const std::string& reason) {
+    if (isAsked(study, norm) && !reason.empty())
+      html += "<li>" + name + " is not judged: " + escapeHtml(reason) + ".</li>\n";
+  };
+  add("en17037", "EN 17037's daylight provision", whyNoEn17037(study));
+  add("leed", "LEED", whyNoLeedHour(study));
+  return html;
 }
 
 std::string assumptionsSection(const Page& page) {
@@ -316,7 +330,7 @@ std::string assumptionsSection(const Page& page) {
   html += "<li>The ground reflects " + shortNumber(100.0 * study.groundReflectance) +
           " % where the model draws none.</li>\n<li>Transmittances are multiplied by " +
           shortNumber(study.dirtFactor) + " for dirt and by " + shortNumber(study.frameFactor) +
-          " for frames.</li>\n</ul>\n";
+          " for frames.</li>\n" + unjudgedNorms(study) + "</ul>\n";
   if (page.input.diagnoses.empty()) {
     return html + "<p>Nothing in the model needed repair or attention.</p>\n</section>\n";
   }
@@ -392,8 +406,9 @@ std::string pageHtml(const ReportInput& input, const PagePictures& pictures) {
   return headHtml(input, escapeHtml(modelName(input.study))) + headerHtml(page) + "<main>\n" +
          firstHtml(page) + overviewSection(page) + roomSections(page) +
          viewerSection(page.input, page.scale) + assumptionsSection(page) + accuracySection(page.input) +
-         materialsSection(page) + againSection(page) + "</main>\n<footer>Clerestory " +
-         escapeHtml(input.run.version) + "</footer>\n" + scriptsHtml(input) + "</body>\n</html>\n";
+         materialsSection(page) + luminairesSection(page.input) + againSection(page) +
+         "</main>\n<footer>Clerestory " + escapeHtml(input.run.version) + "</footer>\n" + scriptsHtml(input) +
+         "</body>\n</html>\n";
 }
 
 }  // namespace clerestory

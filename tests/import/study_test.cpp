@@ -256,8 +256,12 @@ TEST(Study, SaysWhatThisVersionCannotDo) {
     EXPECT_TRUE(contains(message, "not supported by this version")) << text << message;
     EXPECT_TRUE(contains(message, "study.toml:")) << message;
   }
-  const Study study = readText(kModel + "[report]\nnorms = [\"leed\"]\n");
-  EXPECT_TRUE(contains(study.assumptions.at(0), "leed"));
+}
+
+TEST(Study, KnowsNormsByName) {
+  EXPECT_EQ(readText(kModel + "[report]\nnorms = [\"leed\"]\n").norms, std::vector<std::string>{"leed"});
+  const std::string message = errorOfText(kModel + "[report]\nnorms = [\"leeds\"]\n");
+  EXPECT_TRUE(contains(message, "leeds") && contains(message, "en17037")) << message;
 }
 
 TEST(Study, PlacesLuminaires) {

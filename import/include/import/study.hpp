@@ -111,6 +111,7 @@ struct Study {
   std::vector<ViewSettings> views;
   double accuracy = 0.05;  ///< asked 95th percentile of the sensors' relative errors
   double timeLimit_s = 0.0;
+  std::vector<std::string> norms;        ///< "en17037", "leed": which pass or fail is shown
   std::vector<std::string> assumptions;  ///< what was taken for granted, in sentences for the report
 };
 
