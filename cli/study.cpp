@@ -145,6 +145,9 @@ void runStudy(const StudyArguments& arguments) {
   const std::filesystem::path folder =
       arguments.folder.empty() ? arguments.input.file.stem().concat("-report") : arguments.folder;
   checkReportFolder(folder);
+  if (!arguments.noPictures) {
+    checkDisplay();
+  }
 
   Progress progress(arguments.quiet);
   StageClock clock;
@@ -265,8 +268,9 @@ void addStudyCommand(CLI::App& program, const std::string& commandLine, std::fun
   command.add_flag("--quiet", arguments->quiet, "say nothing on standard error but what went wrong");
   command.add_flag("--json", arguments->json, "print study.json on standard output too");
   command.footer(
-      "The report holds index.html, sensors.csv, surfaces.csv, rooms.csv, iterations.csv, study.json and "
-      "run.json.\n"
+      "The report holds index.html, sensors.csv, surfaces.csv, rooms.csv, iterations.csv, study.json, "
+      "run.json\nand scene.glb; pictures in EXR and PNG, in the colours of the OpenColorIO config that OCIO "
+      "names, where it\nnames one.\n"
       "A folder that holds something else than a report is refused; an older report is replaced when the new "
       "one\n"
       "is complete. SIZE is in bytes or with K, M or G.\n\n"

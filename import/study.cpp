@@ -282,16 +282,56 @@ void readExposure(const TomlSection& section, ViewSettings& view) {
   view.exposure_ev = section.number("exposure_ev", {-50, 50});
 }
 
+Projection readProjection(const TomlSection& section) {
+  const std::string name = section.text("projection").value_or("perspective");
+  if (name == "perspective") {
+    return Projection::perspective;
+  }
+  if (name == "fisheye") {
+    return Projection::fisheye;
+  }
+  if (name != "panorama") {
+    section.fail("projection", "projection \"" + cleanName(name) +
+                                   "\" is not known; use \"perspective\", \"fisheye\" or \"panorama\"");
+  }
+  if (section.has("field_of_view")) {
+    section.fail("field_of_view", "a panorama shows all round and has no field_of_view");
+  }
+  return Projection::panorama;
+}
+
+void readPictureSize(const TomlSection& section, ViewSettings& view) {
+  const bool isPanorama = view.projection == Projection::panorama;
+  view.size_px = view.projection == Projection::fisheye ? std::array{720, 720}
+                 : isPanorama                           ? std::array{1440, 720}
+                                                        : view.size_px;
+  if (const auto size = section.pair("size")) {
+    if (std::min((*size)[0], (*size)[1]) < 1 || std::max((*size)[0], (*size)[1]) > 16384) {
+      section.fail("size", "size goes from 1 to 16384 pixels each way");
+    }
+    view.size_px = {static_cast<int>((*size)[0]), static_cast<int>((*size)[1])};
+  }
+  if (isPanorama && view.size_px[0] != 2 * view.size_px[1]) {
+    section.fail("size", "a panorama is twice as wide as high");
+  }
+}
+
+/// One of two numbers of bits.
+int readBits(const TomlSection& section, const char* key, int usual, int other) {
+  const auto bits = section.number(key, {0, 64});
+  if (bits && *bits != usual && *bits != other) {
+    section.fail(key,
+                 std::string(key) + " has to be " + std::to_string(usual) + " or " + std::to_string(other));
+  }
+  return bits ? static_cast<int>(*bits) : usual;
+}
+
 ViewSettings readView(const TomlSection& section, std::set<std::string>& taken) {
-  section.allowOnly({"name", "projection", "eye", "target", "up", "field_of_view", "size", "exposure_ev"});
+  section.allowOnly({"name", "projection", "eye", "target", "up", "field_of_view", "size", "exposure_ev",
+                     "exr_bits", "png_bits"});
   ViewSettings view;
   view.name = nameOf(section, "view", taken);
-  const std::string projection = section.text("projection").value_or("perspective");
-  if (projection != "perspective") {
-    const bool later = projection == "fisheye" || projection == "panorama";
-    section.fail("projection", "projection \"" + cleanName(projection) + "\" is not " +
-                                   (later ? "supported by this version" : "known") + "; use \"perspective\"");
-  }
+  view.projection = readProjection(section);
   const auto eye = section.point("eye");
   const auto target = section.point("target");
   if (!eye || !target) {
@@ -304,14 +344,13 @@ ViewSettings readView(const TomlSection& section, std::set<std::string>& taken) 
   if (glm::length(glm::cross(direction, view.up)) <= 1e-9 * glm::length(direction) * glm::length(view.up)) {
     section.fail("target", "eye and target have to differ, and up must not point along the view");
   }
-  view.fieldOfView_deg = section.number("field_of_view", {1, 170}).value_or(view.fieldOfView_deg);
-  if (const auto size = section.pair("size")) {
-    if (std::min((*size)[0], (*size)[1]) < 1 || std::max((*size)[0], (*size)[1]) > 16384) {
-      section.fail("size", "size goes from 1 to 16384 pixels each way");
-    }
-    view.size_px = {static_cast<int>((*size)[0]), static_cast<int>((*size)[1])};
-  }
+  const bool isFisheye = view.projection == Projection::fisheye;
+  view.fieldOfView_deg = section.number("field_of_view", {1, isFisheye ? 360.0 : 170.0})
+                             .value_or(isFisheye ? 180.0 : view.fieldOfView_deg);
+  readPictureSize(section, view);
   readExposure(section, view);
+  view.exrBits = readBits(section, "exr_bits", 16, 32);
+  view.pngBits = readBits(section, "png_bits", 8, 16);
   return view;
 }
 
@@ -346,7 +385,12 @@ void readReport(const TomlSection& file, Study& study) {
   if (!section) {
     return;
   }
-  section->allowOnly({"norms"});
+  section->allowOnly({"norms", "false_colours"});
+  const std::string scale = section->text("false_colours").value_or("logarithmic");
+  if (scale != "logarithmic" && scale != "linear") {
+    section->fail("false_colours", "false_colours has to be \"logarithmic\" or \"linear\"");
+  }
+  study.falseColoursAreLinear = scale == "linear";
   for (const std::string& norm : section->texts("norms")) {
     if (norm != "en17037" && norm != "leed") {
       section->fail("norms",

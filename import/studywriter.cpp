@@ -170,12 +170,23 @@ void writeGrid(const GridSettings& grid, Writer& out) {
 void writeView(const ViewSettings& view, Writer& out) {
   out.section("[[view]]");
   out.line("name", inQuotes(view.name));
+  if (view.projection != Projection::perspective) {
+    out.line("projection", inQuotes(projectionKey(view.projection)));
+  }
   out.line("eye", list(view.eye_m));
   out.line("target", list(view.target_m));
   out.line("up", list(view.up));
-  out.line("field_of_view", view.fieldOfView_deg);
+  if (view.projection != Projection::panorama) {
+    out.line("field_of_view", view.fieldOfView_deg);
+  }
   out.line("size", "[" + std::to_string(view.size_px[0]) + ", " + std::to_string(view.size_px[1]) + "]");
   out.line("exposure_ev", view.exposure_ev ? numberText(*view.exposure_ev) : inQuotes("auto"));
+  if (view.exrBits != ViewSettings{}.exrBits) {
+    out.line("exr_bits", std::to_string(view.exrBits));
+  }
+  if (view.pngBits != ViewSettings{}.pngBits) {
+    out.line("png_bits", std::to_string(view.pngBits));
+  }
 }
 
 /// The per cent that reads back to the same fraction, in as few digits as that takes.
@@ -186,6 +197,12 @@ std::string accuracyText(double accuracy) {
 }
 
 }  // namespace
+
+const char* projectionKey(Projection projection) {
+  return projection == Projection::perspective ? "perspective"
+         : projection == Projection::fisheye   ? "fisheye"
+                                               : "panorama";
+}
 
 std::string studyToml(const Study& study) {
   Writer out;
@@ -215,10 +232,15 @@ std::string studyToml(const Study& study) {
   }
   out.section("[accuracy]");
   out.line("target", inQuotes(accuracyText(study.accuracy)));
+  if (study.falseColoursAreLinear || !study.norms.empty()) {
+    out.section("[report]");
+  }
+  if (study.falseColoursAreLinear) {
+    out.line("false_colours", inQuotes("linear"));
+  }
   if (!study.norms.empty()) {
     std::string norms;
     for (const std::string& norm : study.norms) norms += (norms.empty() ? "" : ", ") + inQuotes(norm);
-    out.section("[report]");
     out.line("norms", "[" + norms + "]");
   }
   return out.take();

@@ -82,10 +82,11 @@ bool startsAndEnds(const std::string& name, std::string_view start, std::string_
 bool isReportFile(const std::string& name) {
   for (const char* known :
        {"index.html", "study.json", "run.json", "study.toml", "sensors.csv", "surfaces.csv", "rooms.csv",
-        "iterations.csv", "scene.glb", ".DS_Store", "Thumbs.db"}) {
+        "iterations.csv", "scene.glb", "config.ocio", ".DS_Store", "Thumbs.db"}) {
     if (name == known) return true;
   }
   return startsAndEnds(name, "view-", ".exr") || startsAndEnds(name, "view-", ".png") ||
+         startsAndEnds(name, "luminance-", ".png") || startsAndEnds(name, "illuminance-", ".png") ||
          startsAndEnds(name, "plan-", ".png") || startsAndEnds(name, "points-", ".csv") ||
          startsAndEnds(name, "photometry-", ".ies") || startsAndEnds(name, "photometry-", ".ldt");
 }

@@ -1,26 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exposes pictures, converts them for the display through OpenColorIO and writes them as files.
+// Exposes pictures and writes them as files.
 #include "image.hpp"
-
-#include <OpenColorIO/OpenColorIO.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include <import/error.hpp>
 
 namespace clerestory {
 namespace {
 
-namespace ocio = OCIO_NAMESPACE;
-
 constexpr double middleGrey = 0.18;
-constexpr double shoulder = 0.5;
+constexpr double greyAtEv0_cd_m2 = 0.125;  // ISO 100 and a meter's constant of 12.5
 constexpr double largestHalf = 65504.0;
-constexpr const char* sceneSpace = "Linear Rec.709 (D65)";
-constexpr const char* displayName = "sRGB - Display";
-constexpr const char* viewName = "Colorimetric";
 
 double luminance(const glm::vec3& c) {
   return 0.2126 * static_cast<double>(c.x) + 0.7152 * static_cast<double>(c.y) +
@@ -33,65 +25,17 @@ float exposed(float value_cd_m2, double scale) {
   return value > 0.0 ? static_cast<float>(std::min(value, largestHalf)) : 0.0F;
 }
 
-ocio::ColorSpaceRcPtr colourSpace(ocio::ReferenceSpaceType type, const char* name) {
-  ocio::ColorSpaceRcPtr space = ocio::ColorSpace::Create(type);
-  space->setName(name);
-  return space;
+std::vector<float> exposed(const LuminanceImage& image, double scale) {
+  std::vector<float> values;
+  values.reserve(image.pixels_cd_m2.size() * 3);
+  for (const glm::vec3& pixel : image.pixels_cd_m2) {
+    for (int c = 0; c < 3; ++c) values.push_back(exposed(pixel[c], scale));
+  }
+  return values;
 }
 
-/// Scene-linear Rec.709 is the reference itself; one matrix leads to the display reference, CIE XYZ of D65.
-ocio::ConstConfigRcPtr makeConfig() {
-  ocio::ConfigRcPtr config = ocio::Config::Create();
-  config->setVersion(2, 0);
-  config->addColorSpace(colourSpace(ocio::REFERENCE_SPACE_SCENE, sceneSpace));
-  ocio::ColorSpaceRcPtr raw = colourSpace(ocio::REFERENCE_SPACE_SCENE, "Raw");
-  raw->setIsData(true);
-  config->addColorSpace(raw);
-
-  ocio::ColorSpaceRcPtr display = colourSpace(ocio::REFERENCE_SPACE_DISPLAY, displayName);
-  ocio::BuiltinTransformRcPtr encoding = ocio::BuiltinTransform::Create();
-  encoding->setStyle("DISPLAY - CIE-XYZ-D65_to_sRGB");
-  display->setTransform(encoding, ocio::COLORSPACE_DIR_FROM_REFERENCE);
-  config->addColorSpace(display);
-
-  ocio::MatrixTransformRcPtr toXyz = ocio::MatrixTransform::Create();
-  const double matrix[16] = {0.412390799265959,
-                             0.357584339383878,
-                             0.180480788401834,
-                             0,
-                             0.212639005871510,
-                             0.715168678767756,
-                             0.072192315360734,
-                             0,
-                             0.019330818715592,
-                             0.119194779794626,
-                             0.950532152249661,
-                             0,
-                             0,
-                             0,
-                             0,
-                             1};
-  toXyz->setMatrix(matrix);
-  ocio::ViewTransformRcPtr view = ocio::ViewTransform::Create(ocio::REFERENCE_SPACE_SCENE);
-  view->setName(viewName);
-  view->setTransform(toXyz, ocio::VIEWTRANSFORM_DIR_FROM_REFERENCE);
-  config->addViewTransform(view);
-  config->setDefaultViewTransformName(viewName);
-  config->addDisplayView(displayName, viewName, viewName, displayName, "", "", "");
-
-  config->setRole(ocio::ROLE_SCENE_LINEAR, sceneSpace);
-  config->setRole(ocio::ROLE_DEFAULT, "Raw");
-  config->validate();
-  return config;
-}
-
-ocio::ConstCPUProcessorRcPtr displayProcessor() {
-  ocio::DisplayViewTransformRcPtr transform = ocio::DisplayViewTransform::Create();
-  transform->setSrc(sceneSpace);
-  transform->setDisplay(displayName);
-  transform->setView(viewName);
-  // Lossless: the faster curves of the default differ by up to one code value.
-  return makeConfig()->getProcessor(transform)->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
+std::vector<float> floats(const glm::dvec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
 void throwIf(const std::filesystem::path& file, const std::string& problem) {
@@ -123,7 +67,7 @@ void DisplayImage::fill(double x0, double y0, double x1, double y1, const Displa
 }
 
 double exposureScale(const LuminanceImage& image, std::optional<double> exposure_ev) {
-  if (exposure_ev) return middleGrey / (0.125 * std::exp2(*exposure_ev));
+  if (exposure_ev) return middleGrey / (greyAtEv0_cd_m2 * std::exp2(*exposure_ev));
   double sum = 0.0;
   double count = 0.0;
   for (const glm::vec3& pixel : image.pixels_cd_m2) {
@@ -142,50 +86,49 @@ double exposureScale(const LuminanceImage& image, std::optional<double> exposure
   return middleGrey / std::exp(logarithms / count);
 }
 
-double toneCurve(double value) {
-  if (!(value > shoulder)) return value > 0.0 ? value : 0.0;
-  return shoulder + (1.0 - shoulder) * (1.0 - std::exp(-(value - shoulder) / (1.0 - shoulder)));
+double exposureValue(double scale) {
+  return std::log2(middleGrey / (greyAtEv0_cd_m2 * scale));
 }
 
-DisplayImage displayImage(const LuminanceImage& image, double scale) {
-  DisplayImage result(image.width, image.height, {0, 0, 0});
-  std::vector<float> values;
-  values.reserve(result.bytes.size());
-  for (const glm::vec3& pixel : image.pixels_cd_m2) {
-    for (int c = 0; c < 3; ++c) {
-      values.push_back(static_cast<float>(toneCurve(static_cast<double>(exposed(pixel[c], scale)))));
-    }
-  }
-  if (values.size() != result.bytes.size())
-    throw std::logic_error("a picture has more or fewer pixels than its size");
-  if (values.empty()) return result;
-  try {
-    ocio::PackedImageDesc description(values.data(), image.width, image.height, 3);
-    displayProcessor()->apply(description);
-  } catch (const ocio::Exception& error) {
-    throw MachineError(std::string("colours could not be converted for the display: ") + error.what());
-  }
-  std::transform(values.begin(), values.end(), result.bytes.begin(), [](float value) {
-    return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
-  });
+std::vector<float> displayValues(const LuminanceImage& image, double scale, const DisplayTransform& display) {
+  std::vector<float> values = exposed(image, scale);
+  display.apply(values, image.width, image.height);
+  for (float& value : values) value = value > 0.0F ? std::min(value, 1.0F) : 0.0F;
+  return values;
+}
+
+DisplayImage displayImage(const std::vector<float>& values, int width, int height) {
+  DisplayImage result(width, height, {0, 0, 0});
+  std::transform(values.begin(), values.end(), result.bytes.begin(),
+                 [](float value) { return static_cast<std::uint8_t>(std::lround(255.0F * value)); });
   return result;
 }
 
-void writeExr(const std::filesystem::path& file, const LuminanceImage& image, double scale) {
-  const PictureFiles::Attributes attributes = {
+void writeExr(const std::filesystem::path& file, const LuminanceImage& image, const ViewSettings& view,
+              double scale) {
+  PictureFiles::Attributes attributes = {
       {"compression", "zip"},
       {"oiio:ColorSpace", "lin_srgb"},
       {"Software", "Clerestory"},
       {"DateTime", "2000:01:01 00:00:00"},  // else the time of writing, and no two files are the same
       {"chromaticities", std::vector<float>{0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F}},
       {"whiteLuminance", static_cast<float>(1.0 / scale)},  // the name that OpenEXR knows
-      {"clerestory:luminanceScale", static_cast<float>(1.0 / scale)}};
-  std::vector<float> values;
-  values.reserve(image.pixels_cd_m2.size() * 3);
-  for (const glm::vec3& pixel : image.pixels_cd_m2) {
-    for (int c = 0; c < 3; ++c) values.push_back(exposed(pixel[c], scale));
-  }
-  throwIf(file, pictureFiles().writeHalf(file, image.width, image.height, values.data(), attributes));
+      {"clerestory:luminanceScale", static_cast<float>(1.0 / scale)},
+      {"clerestory:exposureEv", static_cast<float>(exposureValue(scale))},
+      {"clerestory:projection", projectionKey(view.projection)},
+      {"clerestory:eye_m", floats(view.eye_m)},
+      {"clerestory:target_m", floats(view.target_m)},
+      {"clerestory:up", floats(view.up)}};
+  if (view.projection != Projection::panorama)
+    attributes.emplace_back("clerestory:fieldOfView_deg", static_cast<float>(view.fieldOfView_deg));
+  const PictureDepth depth = view.exrBits == 32 ? PictureDepth::single : PictureDepth::half;
+  throwIf(file, pictureFiles().writeFloats(file, image.width, image.height, exposed(image, scale).data(),
+                                           depth, attributes));
+}
+
+void writePng16(const std::filesystem::path& file, const std::vector<float>& values, int width, int height) {
+  throwIf(file, pictureFiles().writeFloats(file, width, height, values.data(), PictureDepth::unsigned16,
+                                           {{"oiio:ColorSpace", "sRGB"}, {"Software", "Clerestory"}}));
 }
 
 void writePng(const std::filesystem::path& file, const DisplayImage& image) {

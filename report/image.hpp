@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures: exposure, display colours and files. The only place that knows OpenColorIO.
+// Pictures: exposure and files.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include <solver/solution.hpp>
 
 #include "colormap.hpp"
+#include "colour.hpp"
 
 namespace clerestory {
 
@@ -30,20 +31,27 @@ struct DisplayImage {
 /// exposure value at ISO 100: a luminance of 0.125 × 2^EV cd/m² becomes 0.18.
 double exposureScale(const LuminanceImage& image, std::optional<double> exposure_ev);
 
-/// Scene-linear value to display-linear: the same up to a shoulder at 0.5, from there smoothly towards 1.
-double toneCurve(double value);
+/// The exposure value at ISO 100 of such a scale.
+double exposureValue(double scale);
 
-/// The picture for a screen: exposed, its highlights rolled off, encoded to sRGB.
-DisplayImage displayImage(const LuminanceImage& image, double scale);
+/// The picture exposed and turned into the display's values, 3 a pixel, each 0 to 1.
+std::vector<float> displayValues(const LuminanceImage& image, double scale, const DisplayTransform& display);
 
-/// Half float, scene-linear Rec.709, luminance times `scale`; the attributes clerestory:luminanceScale and
-/// whiteLuminance hold the cd/m² of 1.0. Throws MachineError.
-void writeExr(const std::filesystem::path& file, const LuminanceImage& image, double scale);
+DisplayImage displayImage(const std::vector<float>& values, int width, int height);
+
+/// Scene-linear Rec.709 as half or single floats, luminance times `scale`. The attributes
+/// clerestory:luminanceScale and whiteLuminance hold the cd/m² of 1.0; others the camera and the exposure.
+/// Throws MachineError.
+void writeExr(const std::filesystem::path& file, const LuminanceImage& image, const ViewSettings& view,
+              double scale);
+
+/// Display values with 16 bits each. Throws MachineError.
+void writePng16(const std::filesystem::path& file, const std::vector<float>& values, int width, int height);
 
 /// Throws MachineError.
 void writePng(const std::filesystem::path& file, const DisplayImage& image);
 
-/// Writes ASCII text around the baseline y; without the font the picture stays without it.
+/// Writes ASCII text around the baseline y.
 void drawText(DisplayImage& image, int x, int y, const std::string& text, int size_px,
               const DisplayColour& colour, TextAlign align);
 

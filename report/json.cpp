@@ -11,6 +11,7 @@
 
 #include "escape.hpp"
 #include "folder.hpp"
+#include "image.hpp"
 #include "luminairerows.hpp"
 #include "metrics.hpp"
 #include "norms.hpp"
@@ -31,7 +32,8 @@ Json number(double value) {
   return std::isfinite(written) ? Json(written) : Json(nullptr);
 }
 
-Json colour(const glm::dvec3& value) {
+/// Three numbers: red, green and blue, or x, y and z.
+Json triple(const glm::dvec3& value) {
   return Json::array({number(value.x), number(value.y), number(value.z)});
 }
 
@@ -189,7 +191,7 @@ Json surfaces(const ReportInput& input) {
                      {{"mean", number(v.illuminanceMean_lx)},
                       {"min", number(v.illuminanceMin_lx)},
                       {"max", number(v.illuminanceMax_lx)}}},
-                    {"exitance_mean_lm_m2", colour(v.exitanceMean_lm_m2)},
+                    {"exitance_mean_lm_m2", triple(v.exitanceMean_lm_m2)},
                     {"error_lx", number(v.error_lx)},
                     {"elements", v.elements}});
   }
@@ -200,15 +202,34 @@ Json materials(const CleanModel& model) {
   Json list = Json::array();
   for (const Material& material : model.materials) {
     Json entry = {{"name", validUtf8(material.name)},
-                  {"reflectance", colour(material.reflectance)},
-                  {"exitance_lm_m2", colour(material.exitance_lm_m2)},
+                  {"reflectance", triple(material.reflectance)},
+                  {"exitance_lm_m2", triple(material.exitance_lm_m2)},
                   {"mirrors_as_matt", material.mirrorsAsMatt},
                   {"glazing", material.glazing}};
     if (material.glazing) {
-      entry["transmittance"] = colour(material.transmittance);
+      entry["transmittance"] = triple(material.transmittance);
       entry["transmittance_is_assumed"] = material.transmittanceIsAssumed;
       entry["panes"] = material.panes;
     }
+    list.push_back(entry);
+  }
+  return list;
+}
+
+Json views(const ReportInput& input) {
+  Json list = Json::array();
+  for (std::size_t v = 0; v < input.solution.views.size(); ++v) {
+    const ViewSettings& view = input.study.views.at(v);
+    const double scale = exposureScale(input.solution.views[v], view.exposure_ev);
+    Json entry = {{"name", validUtf8(view.name)},
+                  {"projection", projectionKey(view.projection)},
+                  {"eye_m", triple(view.eye_m)},
+                  {"target_m", triple(view.target_m)},
+                  {"up", triple(view.up)}};
+    if (view.projection != Projection::panorama) entry["field_of_view_deg"] = number(view.fieldOfView_deg);
+    entry["size_px"] = view.size_px;
+    entry["exposure_ev"] = number(exposureValue(scale));
+    entry["luminance_of_1_cd_m2"] = number(1.0 / scale);
     list.push_back(entry);
   }
   return list;
@@ -279,8 +300,8 @@ std::string studyJson(const ReportInput& input) {
                      {"solution",
                       {{"elements", input.solution.elements},
                        {"columns", input.solution.columns},
-                       {"grey", input.solution.grey},
-                       {"views", input.solution.views.size()}}},
+                       {"grey", input.solution.grey}}},
+                     {"views", views(input)},
                      {"energy_balance", energy(input.solution)},
                      {"diagnoses", diagnoses(input)}};
   return dumped(json);

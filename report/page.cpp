@@ -8,6 +8,7 @@
 #include <solver/daylight.hpp>
 
 #include "escape.hpp"
+#include "falsepicture.hpp"
 #include "json.hpp"
 #include "luminairerows.hpp"
 #include "metrics.hpp"
@@ -90,13 +91,35 @@ std::string headerHtml(const Page& page) {
   return html + contentsHtml(page) + "</header>\n";
 }
 
+std::string pictureHtml(const std::string& png, const std::string& alt, int width, int height) {
+  return "<img src=\"data:image/png;base64," + base64(png) + "\" width=\"" + std::to_string(width) +
+         "\" height=\"" + std::to_string(height) + "\" alt=\"" + alt + "\">";
+}
+
 std::string viewFigure(const PageView& view) {
+  const std::string name = escapeHtml(view.name);
   // Where middle grey lies: the luminance that a reader may compare with.
-  return "<figure><img src=\"data:image/png;base64," + base64(view.png) + "\" width=\"" +
-         std::to_string(view.width) + "\" height=\"" + std::to_string(view.height) +
-         "\" alt=\"Rendered view " + escapeHtml(view.name) + "\"><figcaption>View “" + escapeHtml(view.name) +
-         "”. Middle grey is " + roundedNumber(0.18 * view.white_cd_m2) + " cd/m²; luminances are in <code>" +
-         escapeHtml(view.fileStem) + ".exr</code>.</figcaption></figure>\n";
+  return "<figure>" + pictureHtml(view.png, "Rendered view " + name, view.width, view.height) +
+         "<figcaption>View “" + name + "”, exposed for EV " + fixedNumber(view.exposure_ev, 1) +
+         " at ISO 100: middle grey is " + roundedNumber(0.18 * view.white_cd_m2) +
+         " cd/m². Luminances are in <code>view-" + escapeHtml(view.fileName) +
+         ".exr</code>.</figcaption></figure>\n";
+}
+
+/// The views in false colours, folded away until they are asked for.
+std::string falseColours(const std::vector<PageView>& views) {
+  std::string html =
+      "<details class=\"falsecolours\"><summary>Views in false colours</summary>\n<div class=\"rest\">\n";
+  for (const PageView& view : views) {
+    for (const auto& [kind, png] :
+         {std::pair{"Luminance", &view.luminancePng}, std::pair{"Illuminance", &view.illuminancePng}}) {
+      if (png->empty()) continue;
+      const std::string text = std::string(kind) + " in view “" + escapeHtml(view.name) + "”";
+      html += "<figure>" + pictureHtml(*png, text, view.width, view.height + falseLegend_px) +
+              "<figcaption>" + text + "</figcaption></figure>\n";
+    }
+  }
+  return html + "</div>\n</details>\n";
 }
 
 /// Whether EN 17037's least level is met, or nothing where it cannot be asked.
@@ -160,7 +183,7 @@ std::string firstHtml(const Page& page) {
     for (std::size_t v = 1; v < views.size(); ++v) html += viewFigure(views[v]);
     html += "</div>\n";
   }
-  return html + "</div>\n";
+  return html + "</div>\n" + falseColours(views);
 }
 
 std::string overviewSection(const Page& page) {

@@ -11,10 +11,12 @@ namespace clerestory {
 
 /// A view as the page shows it.
 struct PageView {
+  std::size_t index = 0;  ///< into Solution::views
   std::string name;
-  std::string fileStem;  ///< of the .exr and .png in the report
-  std::string png;       ///< the file's bytes
-  double white_cd_m2;    ///< luminance of 1.0 in the scene-linear picture
+  std::string fileName;                           ///< without view-, luminance-, illuminance- and ending
+  std::string png, luminancePng, illuminancePng;  ///< the files' bytes
+  double white_cd_m2 = 1.0;                       ///< luminance of 1.0 in the scene-linear picture
+  double exposure_ev = 0.0;                       ///< at ISO 100
   int width = 0, height = 0;
 };
 

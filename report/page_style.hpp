@@ -34,12 +34,13 @@ nav ul{list-style:none;display:flex;flex-wrap:wrap;gap:6px 22px;margin:0;padding
 figure{margin:30px 0}
 figure img{display:block;width:100%;height:auto;background:var(--tint)}
 figcaption{margin-top:10px;max-width:52em}
-.first{display:grid;grid-template-columns:minmax(0,1.75fr) minmax(0,1fr);gap:40px;align-items:start;margin-top:10px}
+.first{display:grid;grid-template-columns:minmax(0,2fr) minmax(0,1fr);gap:40px;align-items:start;margin-top:10px}
 .first figure,.glance .table{margin:0}
 .views{margin-top:26px}
-.views .rest{margin-top:30px}
-.views .rest{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(420px,100%),1fr));gap:24px}
-.views .rest figure{margin:0}
+.rest{margin-top:30px;display:grid;grid-template-columns:repeat(auto-fit,minmax(min(420px,100%),1fr));gap:24px}
+.rest figure{margin:0}
+summary{cursor:pointer;font-size:.95rem}
+.falsecolours{margin-top:26px}
 dl.figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(190px,1fr));gap:26px 28px;margin:26px 0 34px}
 dl.figures dt{font-size:.84rem;color:var(--soft);line-height:1.35}
 dl.figures dd{margin:2px 0 0;font-size:1.6rem;font-weight:300;letter-spacing:-.01em;white-space:nowrap}

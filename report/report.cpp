@@ -5,7 +5,9 @@
 #include <report/report.hpp>
 
 #include "escape.hpp"
+#include "falsepicture.hpp"
 #include "folder.hpp"
+#include "glb.hpp"
 #include "image.hpp"
 #include "json.hpp"
 #include "page.hpp"
@@ -17,22 +19,72 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Writes the views as EXR and PNG; gives the PNGs' bytes for the page.
+PageView writeView(const fs::path& folder, const std::string& name, std::size_t index,
+                   const ReportInput& input, const DisplayTransform& display) {
+  const LuminanceImage& image = input.solution.views[index];
+  const ViewSettings& view = input.study.views[index];
+  const std::string stem = "view-" + name;
+  const double scale = exposureScale(image, view.exposure_ev);
+  const fs::path png = folder / (stem + ".png");
+  writeExr(folder / (stem + ".exr"), image, view, scale);
+  const std::vector<float> values = displayValues(image, scale, display);
+  writePng(png, displayImage(values, image.width, image.height));
+  PageView shown;
+  shown.index = index;
+  shown.name = view.name;
+  shown.fileName = name;
+  shown.png = readFile(png);
+  shown.white_cd_m2 = 1.0 / scale;
+  shown.exposure_ev = exposureValue(scale);
+  shown.width = image.width;
+  shown.height = image.height;
+  if (view.pngBits == 16) writePng16(png, values, image.width, image.height);  // the page keeps the small one
+  return shown;
+}
+
+/// Writes the views in false colours; puts the PNGs' bytes into the page's views.
+void writeFalseColours(const fs::path& folder, const ReportInput& input, std::vector<PageView>& views) {
+  std::vector<std::vector<float>> luminances;
+  std::vector<std::span<const float>> luminancesShown;
+  std::vector<std::span<const float>> illuminancesShown;
+  for (const PageView& view : views) luminances.push_back(luminancesOf(input.solution.views[view.index]));
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    luminancesShown.emplace_back(luminances[v]);
+    illuminancesShown.emplace_back(input.solution.views[views[v].index].illuminance_lx);
+  }
+  const bool isLinear = input.study.falseColoursAreLinear;
+  const ValueScale luminance = valueScale(luminancesShown, isLinear);
+  const ValueScale illuminance = valueScale(illuminancesShown, isLinear);
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    PageView& view = views[v];
+    const auto paint = [&](const std::string& kind, std::span<const float> values, const ValueScale& scale,
+                           const std::string& unit) -> std::string {
+      if (values.empty()) return {};
+      const fs::path file = folder / (kind + "-" + view.fileName + ".png");
+      writePng(file, falsePicture(values, view.width, view.height, scale,
+                                  (kind == "luminance" ? "Luminance, " : "Illuminance, ") + unit));
+      return readFile(file);
+    };
+    view.luminancePng = paint("luminance", luminancesShown[v], luminance, "cd/m2");
+    view.illuminancePng = paint("illuminance", illuminancesShown[v], illuminance, "lx");
+  }
+}
+
+/// Writes the views as EXR and PNG with the config that leads from one to the other; gives the PNGs' bytes
+/// for the page.
 std::vector<PageView> writeViews(const fs::path& folder, const ReportInput& input) {
   std::vector<std::string> names;
   for (std::size_t v = 0; v < input.solution.views.size(); ++v) names.push_back(input.study.views.at(v).name);
+  if (names.empty()) return {};
   const std::vector<std::string> files = safeFileNames(names);
+  const DisplayTransform display;
+  if (display.isShipped()) writeFile(folder / "config.ocio", shippedConfig);
   std::vector<PageView> pictures;
   for (std::size_t v = 0; v < files.size(); ++v) {
-    const LuminanceImage& image = input.solution.views[v];
-    if (image.width <= 0 || image.height <= 0) continue;
-    const double scale = exposureScale(image, input.study.views[v].exposure_ev);
-    const std::string stem = "view-" + files[v];
-    writeExr(folder / (stem + ".exr"), image, scale);
-    writePng(folder / (stem + ".png"), displayImage(image, scale));
-    pictures.push_back(
-        {names[v], stem, readFile(folder / (stem + ".png")), 1.0 / scale, image.width, image.height});
+    if (input.solution.views[v].pixels_cd_m2.empty()) continue;
+    pictures.push_back(writeView(folder, files[v], v, input, display));
   }
+  writeFalseColours(folder, input, pictures);
   return pictures;
 }
 
@@ -107,6 +159,7 @@ void writeReport(const fs::path& folder, const ReportInput& input) {
     writeFile(partial / "surfaces.csv", surfacesCsv(input));
     writeFile(partial / "rooms.csv", roomsCsv(input));
     writeFile(partial / "iterations.csv", iterationsCsv(input));
+    writeFile(partial / "scene.glb", sceneGlb(input));
     const PagePictures pictures = {writeViews(partial, input), writePlans(partial, input)};
     writeFile(partial / "index.html", pageHtml(input, pictures));
   });

@@ -7,11 +7,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
 #include <geometry/parallel.hpp>
 #include <geometry/sampling.hpp>
+
+#include "camera.hpp"
 
 namespace clerestory {
 namespace {
@@ -22,33 +25,6 @@ constexpr std::size_t spotsOfPixel = 4;
 constexpr glm::vec2 spots[spotsOfPixel] = {
     {0.375F, 0.125F}, {0.875F, 0.375F}, {0.125F, 0.625F}, {0.625F, 0.875F}};
 constexpr int smoothingSteps = 5;  // each doubles the reach: 62 cells after five
-
-struct Camera {
-  glm::vec3 eye, forward, right, up;
-  float halfHeight;
-  int width, height;
-
-  /// Width of a cell of the coarse raster where it is seen squarely, of the distance.
-  [[nodiscard]] float cellAngle() const { return cell * 2.0F * halfHeight / static_cast<float>(height); }
-
-  [[nodiscard]] glm::vec3 ray(float x, float y) const {
-    const float scale = 2.0F * halfHeight / static_cast<float>(height);
-    return glm::normalize(forward + (x - 0.5F * static_cast<float>(width)) * scale * right -
-                          (y - 0.5F * static_cast<float>(height)) * scale * up);
-  }
-};
-
-Camera cameraOf(const World& world, const ViewSettings& view) {
-  Camera camera{};
-  camera.eye = world.local(view.eye_m);
-  camera.forward = glm::normalize(glm::vec3(view.target_m - view.eye_m));
-  camera.right = glm::normalize(glm::cross(camera.forward, glm::vec3(view.up)));
-  camera.up = glm::cross(camera.right, camera.forward);
-  camera.halfHeight = static_cast<float>(std::tan(0.5 * view.fieldOfView_deg * std::numbers::pi / 180.0));
-  camera.width = view.size_px[0];
-  camera.height = view.size_px[1];
-  return camera;
-}
 
 GatherSettings shareOf(const GatherSettings& settings, std::size_t count) {
   const float share = 1.0F / static_cast<float>(count);
@@ -72,21 +48,23 @@ class Picture {
   Picture(const SolvedLight<K>& light, const ViewSettings& view, const GatherSettings& settings)
       : light_(light),
         world_(light.world()),
-        camera_(cameraOf(world_, view)),
+        camera_(view),
+        eye_(world_.local(view.eye_m)),
         settings_(settings),
-        spotSettings_(shareOf(settings, spotsOfPixel)),
-        columns_((camera_.width + cell - 1) / cell),
-        rows_((camera_.height + cell - 1) / cell),
+        spotSettings_(shareOf(settings, spotsOfPixel / 2)),
+        columns_((camera_.width() + cell - 1) / cell),
+        rows_((camera_.height() + cell - 1) / cell),
         cells_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
 
   LuminanceImage render() {
-    domain_ = domainAt(world_, camera_.eye);
+    domain_ = domainAt(world_, eye_);
     forEachIndex(cells_.size(), 64, [&](std::size_t i) { gatherCell(i); });
     smooth();
-    LuminanceImage image{camera_.width, camera_.height, {}};
-    image.pixels_cd_m2.resize(static_cast<std::size_t>(camera_.width) *
-                              static_cast<std::size_t>(camera_.height));
-    forEachIndex(image.pixels_cd_m2.size(), 256, [&](std::size_t i) { image.pixels_cd_m2[i] = shade(i); });
+    LuminanceImage image{camera_.width(), camera_.height(), {}, {}};
+    image.pixels_cd_m2.resize(static_cast<std::size_t>(camera_.width()) *
+                              static_cast<std::size_t>(camera_.height()));
+    image.illuminance_lx.assign(image.pixels_cd_m2.size(), std::numeric_limits<float>::quiet_NaN());
+    forEachIndex(image.pixels_cd_m2.size(), 256, [&](std::size_t i) { shade(i, image); });
     return image;
   }
 
@@ -99,14 +77,15 @@ class Picture {
   void gatherCell(std::size_t i) {
     const auto column = static_cast<float>(i % static_cast<std::size_t>(columns_));
     const auto row = static_cast<float>(i / static_cast<std::size_t>(columns_));
-    const glm::vec3 direction = camera_.ray(cell * (column + 0.5F), cell * (row + 0.5F));
-    const auto hit = world_.rays.nearest(camera_.eye, direction, RayScene::Barrier::opaqueAndGlass);
+    const auto direction = camera_.direction(cell * (column + 0.5F), cell * (row + 0.5F));
+    if (!direction) return;
+    const auto hit = world_.rays.nearest(eye_, *direction, RayScene::Barrier::opaqueAndGlass);
     if (!hit || world_.materialOf(hit.piece).glazing) return;
     const std::int32_t domain = world_.building.sideDomain[hit.side()];
     if (domain < 0 || light_.of(domain) == nullptr) return;
     Cell<K>& own = cells_[i];
     own.isSurface = true;
-    own.point = camera_.eye + hit.distance_m * direction;
+    own.point = eye_ + hit.distance_m * *direction;
     own.normal = world_.normalOf(hit.side());
     own.distance_m = hit.distance_m;
     const Gathered<K> arriving = gather(light_, domain, own.point + rayOffset_m * own.normal, own.normal,
@@ -180,51 +159,121 @@ class Picture {
     result.reflectedDeviation_lx = std::sqrt(reflected.variance) / reflected.weights;
   }
 
-  [[nodiscard]] glm::vec3 shade(std::size_t pixel) const {
-    const auto x = static_cast<float>(pixel % static_cast<std::size_t>(camera_.width));
-    const auto y = static_cast<float>(pixel / static_cast<std::size_t>(camera_.width));
+  void shade(std::size_t pixel, LuminanceImage& image) const {
+    const auto x = static_cast<float>(pixel % static_cast<std::size_t>(camera_.width()));
+    const auto y = static_cast<float>(pixel / static_cast<std::size_t>(camera_.width()));
     glm::dvec3 sum(0.0);
-    for (std::size_t i = 0; i < spotsOfPixel; ++i)
-      sum += luminanceAt(x + spots[i].x, y + spots[i].y, mixKeys(0x71d, spotsOfPixel * pixel + i));
-    return glm::vec3(sum / static_cast<double>(spotsOfPixel));
+    double lit_lx = 0.0;
+    int surfaces = 0;
+    for (std::size_t i = 0; i < spotsOfPixel; ++i) {
+      const Seen seen = seenAt(x + spots[i].x, y + spots[i].y, mixKeys(0x71d, spotsOfPixel * pixel + i));
+      sum += seen.luminance_cd_m2;
+      if (std::isnan(seen.illuminance_lx)) continue;
+      lit_lx += seen.illuminance_lx;
+      ++surfaces;
+    }
+    image.pixels_cd_m2[pixel] = glm::vec3(sum / static_cast<double>(spotsOfPixel));
+    if (surfaces > 0) image.illuminance_lx[pixel] = static_cast<float>(lit_lx / surfaces);
   }
 
-  [[nodiscard]] glm::dvec3 luminanceAt(float x, float y, std::uint64_t key) const {
-    const glm::vec3 direction = camera_.ray(x, y);
-    const auto hit = world_.rays.nearest(camera_.eye, direction, RayScene::Barrier::opaqueAndGlass);
+  /// What a ray of a pixel sees, and the illuminance of the surface that it meets.
+  struct Seen {
+    glm::dvec3 luminance_cd_m2{0.0};
+    double illuminance_lx = std::numeric_limits<double>::quiet_NaN();  ///< NaN: no surface
+  };
+
+  [[nodiscard]] Seen seenAt(float x, float y, std::uint64_t key) const {
+    const auto looked = camera_.direction(x, y);
+    if (!looked) return {};
+    const glm::vec3 direction = *looked;
+    const auto hit = world_.rays.nearest(eye_, direction, RayScene::Barrier::opaqueAndGlass);
     // A millimetre, since an opening often lies in the surface that it is fixed to.
-    const auto lamp = lampLuminance(world_, camera_.eye, direction, hit.distance_m + 1e-3F);
-    if (lamp) return *lamp;
+    const auto lamp = lampLuminance(world_, eye_, direction, hit.distance_m + 1e-3F);
+    if (lamp) return {*lamp};
     const std::int32_t domain = hit ? world_.building.sideDomain[hit.side()] : -1;
     const bool isSolved = domain >= 0 && light_.of(domain) != nullptr;
     if (!hit || world_.materialOf(hit.piece).glazing || !isSolved) {
-      if (domain_ < 0) return glm::dvec3(0.0);
-      return world_.layout.totalColour(
-          luminanceAlong(light_, domain_, camera_.eye, direction, true).value_or(Columns<K>{}));
+      if (domain_ < 0) return {};
+      return {world_.layout.totalColour(
+          luminanceAlong(light_, domain_, eye_, direction, true).value_or(Columns<K>{}))};
     }
-    const glm::vec3 point = camera_.eye + hit.distance_m * direction;
+    const glm::vec3 point = eye_ + hit.distance_m * direction;
     const glm::vec3 normal = world_.normalOf(hit.side());
-    std::optional<Columns<K>> irradiance = irradianceAt(x, y, point, normal, hit.distance_m);
+    const float aslant = std::abs(glm::dot(normal, direction));
+    std::optional<Columns<K>> irradiance = irradianceAt(x, y, point, normal, hit.distance_m, aslant);
     if (!irradiance) {
       const Gathered<K> arriving =
           gather(light_, domain, point + rayOffset_m * normal, normal, spotSettings_, key);
       irradiance = arriving.direct_lx + arriving.reflected_lx;
     }
-    *irradiance += world_.layout.template light<K>(
-        world_.layout.sunColumn(),
-        glm::dvec3(sunlightByDisc(world_, point + rayOffset_m * normal, normal, 1, key)));
+    *irradiance += world_.layout.template light<K>(world_.layout.sunColumn(),
+                                                   glm::dvec3(sunlight(domain, point, normal, key)));
     const Columns<K> exitance =
         world_.layout.template property<K>(world_.reflectanceOf(hit.piece)) * *irradiance +
         world_.layout.template light<K>(world_.layout.electricColumn(),
                                         world_.materialOf(hit.piece).exitance_lm_m2);
-    return std::numbers::inv_pi * world_.layout.totalColour(exitance);
+    return {std::numbers::inv_pi * world_.layout.totalColour(exitance),
+            luminanceOf(world_.layout.totalColour(*irradiance))};
+  }
+
+  /// The beam on a surface. Rounding puts some points at the edge of a ceiling or a wall outside, where
+  /// nothing stands before the sun: a closed domain has sun through its panes only.
+  [[nodiscard]] glm::vec3 sunlight(std::int32_t domain, const glm::vec3& point, const glm::vec3& normal,
+                                   std::uint64_t key) const {
+    const glm::vec3 start = point + rayOffset_m * normal;
+    const glm::vec3 beam_lx = sunlightByDisc(world_, start, normal, 1, key);
+    if (beam_lx == glm::vec3(0.0F) || world_.building.domains[static_cast<std::size_t>(domain)].open)
+      return beam_lx;
+    const bool isInside =
+        static_cast<bool>(world_.rays.nearest(start, world_.sun->towards, RayScene::Barrier::opaqueAndGlass));
+    return isInside ? beam_lx : glm::vec3(0.0F);
+  }
+
+  /// Whether a surface goes on for another cell `towards` where its cells lie from a point at its edge, and
+  /// light hardly changes on the way: then it is the same at the edge.
+  [[nodiscard]] bool isEvenBeyond(int column, int row, const glm::vec3& point, const glm::vec3& normal,
+                                  const glm::vec3& towards, float distance_m) const {
+    constexpr float changeMost = 0.15F;
+    const glm::vec3 view = (point - eye_) / distance_m;
+    const float seenAcross = glm::length(towards - glm::dot(towards, view) * view);
+    const float spacing_m = distance_m * cell * camera_.pixelAngle() / std::max(seenAcross, 0.02F);
+    const Cell<K>* near = nullptr;
+    const Cell<K>* far = nullptr;
+    float nearest_m = std::numeric_limits<float>::infinity();
+    float farthest_m = -nearest_m;
+    for (int y = std::max(row - 2, 0); y <= std::min(row + 2, rows_ - 1); ++y) {
+      for (int x = std::max(column - 2, 0); x <= std::min(column + 2, columns_ - 1); ++x) {
+        const Cell<K>& other = cellAt(x, y);
+        const bool isSame = other.isSurface && glm::dot(other.normal, normal) > 0.98F &&
+                            std::abs(glm::dot(other.point - point, normal)) < 0.002F * distance_m;
+        if (!isSame) continue;
+        const float along_m = glm::dot(other.point - point, towards);
+        if (along_m < nearest_m) {
+          nearest_m = along_m;
+          near = &other;
+        }
+        if (along_m > farthest_m) {
+          farthest_m = along_m;
+          far = &other;
+        }
+      }
+    }
+    if (near == nullptr || farthest_m - nearest_m < 0.7F * spacing_m) return false;
+    const float here_lx = world_.layout.strength(near->direct_lx + near->reflected_lx);
+    const float there_lx = world_.layout.strength(far->direct_lx + far->reflected_lx);
+    return std::abs(there_lx - here_lx) < changeMost * here_lx;
   }
 
   /// Irradiance between the cells near a picture point that lie on the same surface, if they lie about it. A
   /// surface that is seen aslant and narrow, as a window's head, often has all of them before the point or
-  /// all behind it, where light may be another.
+  /// all behind it, where light may be another. Cells lie further apart on a surface seen `aslant`, the
+  /// cosine.
   [[nodiscard]] std::optional<Columns<K>> irradianceAt(float x, float y, const glm::vec3& point,
-                                                       const glm::vec3& normal, float distance_m) const {
+                                                       const glm::vec3& normal, float distance_m,
+                                                       float aslant) const {
+    const float cell_m = distance_m * cell * camera_.pixelAngle();  // where it is seen squarely
+    const float step_m = cell_m / std::max(aslant, 0.02F);
+    const float farthest_m = std::max(0.05F * distance_m, std::min(2.0F * step_m, 0.3F * distance_m));
     const int column = static_cast<int>(x) / cell;
     const int row = static_cast<int>(y) / cell;
     Columns<K> sum;
@@ -236,8 +285,7 @@ class Picture {
         const Cell<K>& other = cellAt(column + dx, row + dy);
         if (!other.isSurface || glm::dot(other.normal, normal) < 0.7F) continue;
         const float offPlane = std::abs(glm::dot(other.point - point, normal)) / (0.01F * distance_m);
-        const float away = glm::length(other.point - point) / (0.05F * distance_m);
-        if (away > 1.0F) continue;
+        if (glm::length(other.point - point) > farthest_m) continue;
         const float tent =
             std::max(1.5F - std::abs(x / cell - static_cast<float>(column + dx) - 0.5F), 0.01F) *
             std::max(1.5F - std::abs(y / cell - static_cast<float>(row + dy) - 0.5F), 0.01F);
@@ -248,13 +296,17 @@ class Picture {
       }
     }
     if (weights < 1e-4F) return std::nullopt;
-    if (glm::length(offset) > weights * distance_m * camera_.cellAngle()) return std::nullopt;
+    if (glm::length(offset) > weights * std::max(cell_m, 0.25F * step_m) &&
+        !isEvenBeyond(column, row, point, normal, glm::normalize(offset), distance_m)) {
+      return std::nullopt;
+    }
     return (1.0F / weights) * sum;
   }
 
   const SolvedLight<K>& light_;
   const World& world_;
   Camera camera_;
+  glm::vec3 eye_;
   GatherSettings settings_, spotSettings_;  // of a cell, of a spot of a pixel
   int columns_, rows_;
   std::vector<Cell<K>> cells_;

@@ -206,14 +206,64 @@ std::string read(std::string_view bytes, const std::string& name, PictureEncodin
   }
 }
 
-std::string writeHalf(const std::filesystem::path& file, int width, int height, const float* rgb,
-                      const PictureFiles::Attributes& attributes) {
-  return write(file, specOf(width, height, oiio::TypeDesc::HALF, attributes), oiio::TypeDesc::FLOAT, rgb);
+std::string writeFloats(const std::filesystem::path& file, int width, int height, const float* rgb,
+                        PictureDepth depth, const PictureFiles::Attributes& attributes) {
+  const oiio::TypeDesc type = depth == PictureDepth::half     ? oiio::TypeDesc::HALF
+                              : depth == PictureDepth::single ? oiio::TypeDesc::FLOAT
+                                                              : oiio::TypeDesc::UINT16;
+  return write(file, specOf(width, height, type, attributes), oiio::TypeDesc::FLOAT, rgb);
 }
 
 std::string writeBytes(const std::filesystem::path& file, int width, int height, const std::uint8_t* rgb,
                        const PictureFiles::Attributes& attributes) {
   return write(file, specOf(width, height, oiio::TypeDesc::UINT8, attributes), oiio::TypeDesc::UINT8, rgb);
+}
+
+/// The font where it was when the program was built, then what machines are likely to have.
+constexpr const char* kFonts[] = {CLERESTORY_FONT,    "DejaVuSans", "LiberationSans-Regular",
+                                  "NotoSans-Regular", "Arial",      "Helvetica"};
+
+/// Digits and what units are made of, 5 by 7 dots, rows from the top, for machines without any font.
+struct Glyph {
+  char character;
+  std::array<std::uint8_t, 7> rows;
+};
+constexpr Glyph kGlyphs[] = {{'0', {14, 17, 19, 21, 25, 17, 14}}, {'1', {4, 12, 4, 4, 4, 4, 14}},
+                             {'2', {14, 17, 1, 2, 4, 8, 31}},     {'3', {31, 2, 4, 2, 1, 17, 14}},
+                             {'4', {2, 6, 10, 18, 31, 2, 2}},     {'5', {31, 16, 30, 1, 1, 17, 14}},
+                             {'6', {6, 8, 16, 30, 17, 17, 14}},   {'7', {31, 1, 2, 4, 8, 8, 8}},
+                             {'8', {14, 17, 17, 14, 17, 17, 14}}, {'9', {14, 17, 17, 15, 1, 2, 12}},
+                             {'.', {0, 0, 0, 0, 0, 12, 12}},      {'-', {0, 0, 0, 31, 0, 0, 0}},
+                             {'/', {1, 1, 2, 4, 8, 16, 16}},      {'l', {12, 4, 4, 4, 4, 4, 14}},
+                             {'x', {0, 0, 17, 10, 4, 10, 17}},    {'c', {0, 0, 14, 16, 16, 17, 14}},
+                             {'d', {1, 1, 13, 19, 17, 17, 15}},   {'m', {0, 0, 26, 21, 21, 21, 21}}};
+
+/// Sets the dots of a text whose baseline is `y`; characters without dots are gaps.
+void drawDots(std::uint8_t* rgb, int width, int height, int x, int y, const std::string& text, int size_px,
+              const float* colour, TextAlign align) {
+  const int dot = std::max(1, size_px / 9);
+  const int length = static_cast<int>(text.size()) * 6 * dot;
+  int left = align == TextAlign::left ? x : align == TextAlign::centre ? x - length / 2 : x - length;
+  for (const char character : text) {
+    const auto* glyph = std::find_if(std::begin(kGlyphs), std::end(kGlyphs), [character](const Glyph& known) {
+      return known.character == character;
+    });
+    for (int i = 0; glyph != std::end(kGlyphs) && i < 35 * dot * dot; ++i) {
+      const int column = i % (5 * dot);
+      const int row = i / (5 * dot);
+      const int px = left + column;
+      const int py = y - 7 * dot + row;
+      const bool isSet = (glyph->rows.at(static_cast<std::size_t>(row / dot)) >> (4 - column / dot) & 1) != 0;
+      if (!isSet || px < 0 || py < 0 || px >= width || py >= height) {
+        continue;
+      }
+      for (int c = 0; c < 3; ++c) {
+        rgb[3 * (static_cast<std::ptrdiff_t>(py) * width + px) + c] =
+            static_cast<std::uint8_t>(std::lround(255.0F * colour[c]));
+      }
+    }
+    left += 6 * dot;
+  }
 }
 
 void drawText(std::uint8_t* rgb, int width, int height, int x, int y, const std::string& text, int size_px,
@@ -223,11 +273,14 @@ void drawText(std::uint8_t* rgb, int width, int height, int x, int y, const std:
                             : align == TextAlign::centre ? TextAlignX::Center
                                                          : TextAlignX::Right;
   oiio::ImageBuf buffer(oiio::ImageSpec(width, height, 3, oiio::TypeDesc::UINT8), rgb);
-  if (!oiio::ImageBufAlgo::render_text(buffer, x, y, text, size_px, "DejaVuSans",
-                                       oiio::cspan<float>(colour, 3), alignX,
-                                       oiio::ImageBufAlgo::TextAlignY::Baseline, 0, {}, 1)) {
-    static_cast<void>(buffer.geterror());  // no font on this machine
+  for (const char* font : kFonts) {
+    if (oiio::ImageBufAlgo::render_text(buffer, x, y, text, size_px, font, oiio::cspan<float>(colour, 3),
+                                        alignX, oiio::ImageBufAlgo::TextAlignY::Baseline, 0, {}, 1)) {
+      return;
+    }
+    static_cast<void>(buffer.geterror());  // it is not on this machine
   }
+  drawDots(rgb, width, height, x, y, text, size_px, colour, align);
 }
 
 }  // namespace
@@ -244,7 +297,7 @@ extern "C" CLERESTORY_EXPORT const clerestory::PictureFiles* clerestoryPictureFi
   // had.
   OIIO::attribute("threads", 1);
   OIIO::attribute("exr_threads", -1);
-  static const clerestory::PictureFiles files{clerestory::read, clerestory::writeHalf, clerestory::writeBytes,
-                                              clerestory::drawText};
+  static const clerestory::PictureFiles files{clerestory::read, clerestory::writeFloats,
+                                              clerestory::writeBytes, clerestory::drawText};
   return &files;
 }

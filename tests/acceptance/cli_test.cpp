@@ -283,6 +283,26 @@ TEST_F(Program, ModelAloneGivesAWholeReport) {
   }
 }
 
+TEST_F(Program, FoldersWithSpacesAndOfAnyLanguageWork) {
+  fs::create_directory(folder_ / "B\u00FCro S\u00FCd");
+  for (const char* file : {"study.toml", "room.obj", "room.mtl"})
+    fs::copy_file(folder_ / file, folder_ / "B\u00FCro S\u00FCd" / file);
+  const Outcome outcome = run("study 'B\u00FCro S\u00FCd/study.toml' -o '\u5831\u544A \u2116 1' --quiet");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.messages;
+  for (const char* file : {"index.html", "view-in.exr", "view-in.png", "luminance-in.png", "plan-Desks.png",
+                           "scene.glb", "study.json"}) {
+    EXPECT_GT(readFile(folder_ / "\u5831\u544A \u2116 1" / file).size(), 100U) << file;
+  }
+}
+
+TEST_F(Program, ColourConfigThatCannotBeUsedStopsBeforeTheWork) {
+  setenv("OCIO", "/nowhere/studio.ocio", 1);
+  expectFailure("study study.toml -o report", 1, {"OCIO", "/nowhere/studio.ocio"});
+  EXPECT_FALSE(fs::exists(folder_ / "report"));
+  EXPECT_EQ(run("study study.toml -o report --no-pictures --quiet").exitCode, 0);
+  unsetenv("OCIO");
+}
+
 TEST_F(Program, ReportHoldsTheStudyThatGivesItAgain) {
   ASSERT_EQ(run("study room.obj --accuracy draft --quiet").exitCode, 0);
   const Outcome outcome = run("study room-report/study.toml -o again --quiet");

@@ -248,10 +248,31 @@ TEST(Study, RefusesWrongTypesAndRanges) {
   }
 }
 
+TEST(Study, ViewsAllRoundAreReadAndWritten) {
+  const std::string places = "eye = [0, 0, 0]\ntarget = [0, 1, 0]\n";
+  const Study study = readText(kModel + "[[view]]\nprojection = \"fisheye\"\nexr_bits = 32\n" + places +
+                               "[[view]]\nprojection = \"panorama\"\npng_bits = 16\n" + places);
+  for (const Study& read : {study, readText(studyToml(study))}) {
+    ASSERT_EQ(read.views.size(), 2U);
+    EXPECT_EQ(read.views[0].projection, Projection::fisheye);
+    EXPECT_EQ(read.views[0].fieldOfView_deg, 180.0);
+    EXPECT_EQ(read.views[0].size_px, (std::array{720, 720}));
+    EXPECT_EQ(read.views[0].exrBits, 32);
+    EXPECT_EQ(read.views[0].pngBits, 8);
+    EXPECT_EQ(read.views[1].projection, Projection::panorama);
+    EXPECT_EQ(read.views[1].size_px, (std::array{1440, 720}));
+    EXPECT_EQ(read.views[1].exrBits, 16);
+    EXPECT_EQ(read.views[1].pngBits, 16);
+  }
+  for (const std::string wrong :
+       {"projection = \"fish\"\n", "projection = \"panorama\"\nfield_of_view = 90\n",
+        "projection = \"panorama\"\nsize = [100, 100]\n", "png_bits = 12\n"}) {
+    EXPECT_TRUE(contains(errorOfText(kModel + "[[view]]\n" + wrong + places), "study.toml:")) << wrong;
+  }
+}
+
 TEST(Study, SaysWhatThisVersionCannotDo) {
-  for (const std::string text : {"[[grid]]\nsurface = \"floor*\"\n",
-                                 "[[view]]\nprojection = \"fisheye\"\neye = [0, 0, 0]\ntarget = [0, 1, 0]\n",
-                                 "[accuracy]\ntime_limit_s = 5\n"}) {
+  for (const std::string text : {"[[grid]]\nsurface = \"floor*\"\n", "[accuracy]\ntime_limit_s = 5\n"}) {
     const std::string message = errorOfText(kModel + text);
     EXPECT_TRUE(contains(message, "not supported by this version")) << text << message;
     EXPECT_TRUE(contains(message, "study.toml:")) << message;

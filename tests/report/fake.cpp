@@ -132,6 +132,7 @@ LuminanceImage picture() {
     for (int x = 0; x < image.width; ++x) {
       const float value = 3.0F + 2.0F * static_cast<float>(x) + 5.0F * static_cast<float>(y);
       image.pixels_cd_m2.emplace_back(value, 0.9F * value, 0.7F * value);
+      image.illuminance_lx.push_back(y < 2 ? std::nanf("") : 6.0F * value);
     }
   }
   return image;

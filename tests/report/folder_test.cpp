@@ -34,7 +34,8 @@ TEST(Folder, HoldsTheWholeReportAndNothingBesides) {
   EXPECT_EQ(folder.entries(), std::vector<std::string>{"report"});
   for (const char* file :
        {"index.html", "study.json", "run.json", "study.toml", "sensors.csv", "surfaces.csv", "rooms.csv",
-        "iterations.csv", "view-entrance.exr", "view-entrance.png", "plan-Desks.png", "plan-Shelves.png"}) {
+        "iterations.csv", "scene.glb", "config.ocio", "view-entrance.exr", "view-entrance.png",
+        "luminance-entrance.png", "illuminance-entrance.png", "plan-Desks.png", "plan-Shelves.png"}) {
     EXPECT_GT(fs::file_size(folder.path() / "report" / file), 100u) << file;
   }
 }
@@ -49,7 +50,7 @@ TEST(Folder, HasTheSameBytesTwice) {
     EXPECT_TRUE(contentOf(entry.path()) == contentOf(other)) << entry.path().filename();
     ++files;
   }
-  EXPECT_EQ(files, 12u);
+  EXPECT_EQ(files, 16u);
 }
 
 TEST(Folder, NamesOfFilesAreSafeAndUnique) {

@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include <import/error.hpp>
 
 #include "fake.hpp"
 
@@ -32,14 +36,15 @@ double srgb(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
-/// A case whose one view is a ramp of greys from 0 to 0.5 in scene-linear values at a fixed exposure.
+/// A case whose one view is a ramp of greys from 0 to 0.25 in scene-linear values at a fixed exposure.
 fake::Case ramp() {
   fake::Case made = fake::office();
   made.study.views[0].exposure_ev = 3.0;  // middle grey at 1 cd/m²
   LuminanceImage image;
   image.width = 500;
   image.height = 2;
-  for (int i = 0; i < 1000; ++i) image.pixels_cd_m2.emplace_back(static_cast<float>(0.5 * i / 1000.0 / 0.18));
+  for (int i = 0; i < 1000; ++i)
+    image.pixels_cd_m2.emplace_back(static_cast<float>(0.25 * i / 1000.0 / 0.18));
   made.solution.views = {image};
   return made;
 }
@@ -51,7 +56,7 @@ TEST(Views, PngIsSrgbToOneCodeValueBelowTheShoulder) {
   ASSERT_EQ(png.spec.format, OIIO::TypeDesc::UINT8);
   ASSERT_EQ(png.values.size(), 3000u);
   for (std::size_t i = 0; i < png.values.size(); ++i) {
-    const double expected = 255.0 * srgb(0.5 * static_cast<double>(i / 3) / 1000.0);
+    const double expected = 255.0 * srgb(0.25 * static_cast<double>(i / 3) / 1000.0);
     ASSERT_NEAR(255.0 * static_cast<double>(png.values[i]), expected, 1.0) << i;
   }
 }
@@ -85,6 +90,109 @@ TEST(Views, ExrTimesItsScaleIsLuminance) {
     const double expected =
         static_cast<double>(made.solution.views[0].pixels_cd_m2[i / 3][static_cast<int>(i % 3)]);
     ASSERT_NEAR(static_cast<double>(exr.values[i]) * scale, expected, 1e-3 * expected);
+  }
+}
+
+// What the viewer of an EXR sees with the config beside it is the PNG.
+TEST(Views, PngIsWhatOpenColorIosToolMakesOfTheExr) {
+  if (std::system("oiiotool --help >/dev/null 2>&1") != 0) GTEST_SKIP() << "oiiotool is not installed";
+  const fake::TemporaryFolder folder;
+  fake::Case made = ramp();
+  for (std::size_t i = 0; i < 1000; ++i) {  // saturated and grey, from black to far beyond white
+    const auto value = static_cast<float>(1e-3 * std::pow(1.015, static_cast<double>(i)));
+    made.solution.views[0].pixels_cd_m2[i] = {value, i % 3 == 0 ? value : 0.3F * value, 0.7F * value};
+  }
+  writeReport(folder.path() / "r", made.input());
+  const std::string place = "cd '" + (folder.path() / "r").string() + "' && oiiotool --colorconfig ";
+  for (const std::string view : {"Filmic", "Plain"}) {
+    const std::string command = place +
+                                "config.ocio view-entrance.exr --ociodisplay:from=\"Linear Rec.709\" sRGB " +
+                                view + " -d uint8 -o ../tool.png";
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    const Picture own = read(folder.path() / "r" / "view-entrance.png");
+    const Picture tool = read(folder.path() / "tool.png");
+    ASSERT_EQ(own.values.size(), tool.values.size());
+    int most = 0;
+    for (std::size_t i = 0; i < own.values.size(); ++i)
+      most = std::max(most, static_cast<int>(std::lround(255.0F * std::abs(own.values[i] - tool.values[i]))));
+    if (view == "Filmic") {
+      EXPECT_LE(most, 1);
+    } else {
+      EXPECT_GT(most, 10);  // another view is another picture
+    }
+  }
+}
+
+/// Sets an environment variable while it lives.
+class Environment {
+ public:
+  Environment(const char* name, const std::string& value) : name_(name) { setenv(name, value.c_str(), 1); }
+  ~Environment() { unsetenv(name_); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  const char* name_;
+};
+
+TEST(Views, TheUsersOwnConfigIsUsed) {
+  const fake::TemporaryFolder folder;
+  const fs::path config = folder.path() / "own.ocio";
+  std::ofstream(config) << "ocio_profile_version: 1\nroles: {default: lin_srgb}\n"
+                           "displays: {wall: [!<View> {name: half, colorspace: half}]}\ncolorspaces:\n"
+                           "  - !<ColorSpace> {name: lin_srgb}\n"
+                           "  - !<ColorSpace> {name: half, from_reference: !<MatrixTransform> "
+                           "{matrix: [0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1]}}\n";
+  const Environment own("OCIO", config.string());
+  writeReport(folder.path() / "r", ramp().input());
+  EXPECT_FALSE(fs::exists(folder.path() / "r" / "config.ocio"));
+  const Picture png = read(folder.path() / "r" / "view-entrance.png");
+  for (std::size_t i = 0; i < png.values.size(); ++i) {
+    const double expected = 255.0 * 0.5 * 0.25 * static_cast<double>(i / 3) / 1000.0;
+    ASSERT_NEAR(255.0 * static_cast<double>(png.values[i]), expected, 1.0) << i;
+  }
+}
+
+TEST(Views, AConfigThatCannotBeUsedIsNamed) {
+  const fake::TemporaryFolder folder;
+  const fs::path config = folder.path() / "own.ocio";
+  std::ofstream(config) << "ocio_profile_version: 1\nroles: {default: film}\n"
+                           "displays: {wall: [!<View> {name: film, colorspace: film}]}\n"
+                           "colorspaces:\n  - !<ColorSpace> {name: film}\n";
+  for (const std::string& file : {std::string("/nowhere/config.ocio"), config.string()}) {
+    const Environment own("OCIO", file);
+    try {
+      checkDisplay();
+      ADD_FAILURE() << file;
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find("OCIO"), std::string::npos) << message;
+      EXPECT_NE(message.find(file), std::string::npos) << message;
+      EXPECT_EQ(message.find("lin_rec709_scene") != std::string::npos, file == config.string()) << message;
+    }
+  }
+}
+
+TEST(Views, CameraExposureAndDepthAreInTheFiles) {
+  const fake::TemporaryFolder folder;
+  fake::Case made = ramp();
+  made.study.views[0].eye_m = {1.5, 2.5, 1.625};
+  made.study.views[0].exrBits = 32;
+  made.study.views[0].pngBits = 16;
+  writeReport(folder.path() / "r", made.input());
+  const Picture exr = read(folder.path() / "r" / "view-entrance.exr");
+  EXPECT_EQ(exr.spec.format, OIIO::TypeDesc::FLOAT);
+  EXPECT_NEAR(exr.spec.get_float_attribute("clerestory:exposureEv"), 3.0F, 1e-5F);
+  EXPECT_EQ(exr.spec.get_string_attribute("clerestory:projection"), "perspective");
+  EXPECT_EQ(exr.spec.get_float_attribute("clerestory:fieldOfView_deg"), 70.0F);
+  const OIIO::ParamValue* eye = exr.spec.find_attribute("clerestory:eye_m");
+  ASSERT_NE(eye, nullptr);
+  EXPECT_EQ(static_cast<const float*>(eye->data())[2], 1.625F);
+  const Picture png = read(folder.path() / "r" / "view-entrance.png");
+  EXPECT_EQ(png.spec.format, OIIO::TypeDesc::UINT16);
+  for (std::size_t i = 0; i < png.values.size(); ++i) {
+    const double expected = srgb(0.25 * static_cast<double>(i / 3) / 1000.0);
+    ASSERT_NEAR(static_cast<double>(png.values[i]), expected, 2e-4) << i;
   }
 }
 

@@ -102,7 +102,8 @@ TEST(Page, ShowsEverySensorRoomAndView) {
   std::size_t sensors = 0;
   for (const SensorGrid& grid : made.building.grids) sensors += grid.points.size();
   EXPECT_EQ(countOf(html, "</title></rect>"), sensors);
-  EXPECT_EQ(countOf(html, "<img src=\"data:image/png;base64,"), 1u);
+  EXPECT_EQ(countOf(html, "<img src=\"data:image/png;base64,"),
+            3u);  // the view, its luminance and illuminance
   for (const char* text :
        {">Office</h2>", ">Store</h2>", "G203", "0.1.0", "white paint", "Median daylight factor"}) {
     EXPECT_NE(html.find(text), std::string::npos) << text;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures of a lit room: every pixel of it has light.
 #include <cmath>
+#include <numbers>
 
 #include "solved.hpp"
 
@@ -69,6 +70,59 @@ TEST(View, NarrowSurfaceSeenAslantHasNoDashes) {
   // Rays are few, so each pixel has some per cent of noise: 0.05 was reached. Read from cells that lie before
   // the board's middle or behind it, light errs by 0.3.
   EXPECT_LT(std::sqrt(squares / onBoard), 0.1);
+}
+
+// Luminance times cosine, added up over what a fisheye that looks up sees, is the illuminance of a sensor at
+// its eye; so it is over the upper half of a panorama.
+TEST(View, FisheyeAndPanoramaHoldTheLightThatASensorGets) {
+  Drawing drawing;
+  addRoomWithPane(drawing, {0, 0, 0}, {4, 6, 3}, {0.5, 1.0, 3.5, 2.5});
+  Study study;
+  study.grids = {};
+  ViewSettings fisheye;
+  fisheye.projection = Projection::fisheye;
+  fisheye.eye_m = {2.0, 2.0, 0.9};
+  fisheye.target_m = {2.0, 2.0, 2.0};
+  fisheye.up = {0.0, 1.0, 0.0};
+  fisheye.fieldOfView_deg = 180.0;
+  fisheye.size_px = {180, 180};
+  ViewSettings panorama;
+  panorama.projection = Projection::panorama;
+  panorama.eye_m = fisheye.eye_m;
+  panorama.target_m = {3.0, 3.0, 2.0};  // its height does not tilt the horizon
+  panorama.size_px = {320, 160};
+  study.views = {fisheye, panorama};
+  Building building = buildingOf(drawing.scene);
+  SensorGrid grid;
+  grid.points = {fisheye.eye_m};
+  grid.normals = {{0.0, 0.0, 1.0}};
+  building.grids = {grid};
+  const Solution solution = solve(building, study, {});
+  const double sensor_lx = solution.grids.at(0).sensors.at(0).illuminance_lx;
+
+  constexpr double pi = std::numbers::pi;
+  double seen_lx = 0.0;
+  for (int y = 0; y < 180; ++y) {
+    for (int x = 0; x < 180; ++x) {
+      const double angle = std::hypot(x + 0.5 - 90.0, y + 0.5 - 90.0) * pi / 180.0;
+      if (angle > 0.5 * pi) continue;
+      const glm::vec3& pixel = solution.views[0].pixels_cd_m2[static_cast<std::size_t>(180 * y + x)];
+      seen_lx +=
+          static_cast<double>(pixel.g) * std::cos(angle) * std::sin(angle) / angle * pi / 180.0 * pi / 180.0;
+    }
+  }
+  EXPECT_NEAR(seen_lx, sensor_lx, 0.03 * sensor_lx);
+
+  double around_lx = 0.0;
+  for (int y = 0; y < 80; ++y) {
+    for (int x = 0; x < 320; ++x) {
+      const double altitude = pi * (80.0 - y - 0.5) / 160.0;
+      const glm::vec3& pixel = solution.views[1].pixels_cd_m2[static_cast<std::size_t>(320 * y + x)];
+      around_lx +=
+          static_cast<double>(pixel.g) * std::sin(altitude) * std::cos(altitude) * pi / 160.0 * pi / 160.0;
+    }
+  }
+  EXPECT_NEAR(around_lx, sensor_lx, 0.03 * sensor_lx);
 }
 
 }  // namespace

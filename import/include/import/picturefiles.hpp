@@ -29,6 +29,9 @@ struct Picture {
   [[nodiscard]] const glm::vec4& at(std::size_t x, std::size_t y) const { return texels[y * width + x]; }
 };
 
+/// What a file holds of a value: a float of 16 or 32 bits, or 16 bits for 0 to 1.
+enum class PictureDepth { half, single, unsigned16 };
+
 enum class TextAlign { left, centre, right };
 
 /// The library's functions. No exception crosses its border: a text says what went wrong, empty where nothing
@@ -42,14 +45,14 @@ struct PictureFiles {
   /// messages.
   std::string (*read)(std::string_view bytes, const std::string& name, PictureEncoding encoding,
                       Picture& picture);
-  /// Half floats, `rgb` holds 3 * width * height values, rows from the top.
-  std::string (*writeHalf)(const std::filesystem::path& file, int width, int height, const float* rgb,
-                           const Attributes& attributes);
+  /// `rgb` holds 3 * width * height values, rows from the top.
+  std::string (*writeFloats)(const std::filesystem::path& file, int width, int height, const float* rgb,
+                             PictureDepth depth, const Attributes& attributes);
   /// Bytes, likewise.
   std::string (*writeBytes)(const std::filesystem::path& file, int width, int height, const std::uint8_t* rgb,
                             const Attributes& attributes);
   /// Writes ASCII text around the baseline y into a picture like that of writeBytes; `colour` is red, green,
-  /// blue, each 0 to 1. Without the font the picture stays as it is.
+  /// blue, each 0 to 1. On a machine without fonts only numbers and units are written, in coarse dots.
   void (*drawText)(std::uint8_t* rgb, int width, int height, int x, int y, const std::string& text,
                    int size_px, const float* colour, TextAlign align);
 };

@@ -83,14 +83,25 @@ struct LuminaireSettings {
   glm::dvec2 step_m{0.0};
 };
 
+enum class Projection {
+  perspective,
+  fisheye,   ///< equidistant: as far from the centre as the angle to the view; a circle over the height
+  panorama,  ///< equirectangular: all round, upright along `up`, the target's azimuth in the middle
+};
+
+/// As a study writes it.
+const char* projectionKey(Projection projection);
+
 struct ViewSettings {
   std::string name;
+  Projection projection = Projection::perspective;
   glm::dvec3 eye_m{0.0};
   glm::dvec3 target_m{0.0, 1.0, 0.0};
   glm::dvec3 up{0.0, 0.0, 1.0};
-  double fieldOfView_deg = 70.0;  ///< vertical
+  double fieldOfView_deg = 70.0;  ///< over the picture's height; a panorama has none
   std::array<int, 2> size_px{1280, 720};
   std::optional<double> exposure_ev;  ///< empty: automatic
+  int exrBits = 16, pngBits = 8;      ///< of a value in the files
 };
 
 /// A whole study. Everything has a default, so a model alone is a study too.
@@ -109,7 +120,8 @@ struct Study {
   std::vector<LuminaireSettings> luminaires;
   std::vector<GridSettings> grids;
   std::vector<ViewSettings> views;
-  double accuracy = 0.05;  ///< asked 95th percentile of the sensors' relative errors
+  bool falseColoursAreLinear = false;  ///< of the views, else logarithmic
+  double accuracy = 0.05;              ///< asked 95th percentile of the sensors' relative errors
   double timeLimit_s = 0.0;
   std::vector<std::string> norms;        ///< "en17037", "leed": which pass or fail is shown
   std::vector<std::string> assumptions;  ///< what was taken for granted, in sentences for the report

@@ -40,6 +40,10 @@ void writeReport(const std::filesystem::path& folder, const ReportInput& input);
 /// Checks, before any work is done, that a report can be put at `folder`. Throws InputError.
 void checkReportFolder(const std::filesystem::path& folder);
 
+/// Checks, before any work is done, that pictures can be turned into a display's colours. Throws InputError
+/// where the environment variable OCIO names a config of OpenColorIO that cannot be used.
+void checkDisplay();
+
 /// Removes what an unfinished writeReport has written so far and lets none finish any more, for a thread that
 /// is about to end the program. An older report stays as it is.
 void abandonReport();

@@ -60,10 +60,11 @@ struct EnergyBalance {
       0.0;  ///< share of all power shot that the links missed or overdid, before it is mended
 };
 
-/// A picture in luminance.
+/// A picture in luminance, and the illuminance of the surfaces in it.
 struct LuminanceImage {
   int width = 0, height = 0;
   std::vector<glm::vec3> pixels_cd_m2;  ///< rows from the top, linear Rec.709
+  std::vector<float> illuminance_lx;    ///< likewise; NaN where sky, glass or a lamp is seen
 };
 
 /// The leaves of all solved domains as they are drawn: convex planar polygons, counterclockwise seen from the
