@@ -31,13 +31,13 @@ constexpr float farApart = 0.1F;  // (radii) / distance below which centres stan
 }  // namespace
 
 TransportSettings transportFor(double accuracy) {
-  const double finer = 0.05 / accuracy;  // 1 at the standard accuracy
+  const double finer = 0.04 / accuracy;
   TransportSettings settings;
   settings.epsilon = static_cast<float>(2e-5 / (finer * finer));
   settings.elementMin_m = static_cast<float>(std::max(0.08 / finer, 0.02));
   settings.portalFluxRays = static_cast<std::uint32_t>(std::clamp(1024.0 * finer * finer, 512.0, 65536.0));
   settings.skyRays = static_cast<std::uint32_t>(256.0 * finer);
-  settings.endShare = 0.02 * accuracy;
+  settings.endShare = 0.1 * accuracy;
   return settings;
 }
 
