@@ -12,6 +12,7 @@
 
 #include <import/error.hpp>
 
+#include "chart.hpp"
 #include "compare.hpp"
 #include "exit_code.hpp"
 #include "inspect.hpp"
@@ -53,6 +54,7 @@ std::optional<ExitCode> parse(int argc, char** argv, std::function<void()>& run)
       "  clerestory study study.toml        a study with its own sky, materials, grids and views\n"
       "  clerestory inspect office.glb      what is in the model and what had to be repaired\n"
       "  clerestory compare east west       how far one report or table lies from another\n"
+      "  clerestory chart study.toml        error against time over methods and settings\n"
       "  clerestory study --help            every option of a command, with its default\n\n"
       "Exit codes: 0 done, 1 the input is wrong, 2 the command line is wrong, 3 the machine failed (disk, "
       "memory),\n128 + n ended by signal n.");
@@ -60,6 +62,7 @@ std::optional<ExitCode> parse(int argc, char** argv, std::function<void()>& run)
   addStudyCommand(program, commandLineOf(argc, argv), run);
   addInspectCommand(program, run);
   addCompareCommand(program, run);
+  addChartCommand(program, run);
 
   if (argc < 2) {
     std::cerr << program.help();

@@ -80,25 +80,6 @@ class Unpaired {
   std::multimap<Key, std::size_t> cubes_;
 };
 
-ErrorFigures figuresOf(const std::vector<double>& errors) {
-  const bool isKnown = std::none_of(errors.begin(), errors.end(), [](double e) { return std::isnan(e); });
-  if (errors.empty() || !isKnown) return {kNone, kNone, kNone, kNone};
-  ErrorFigures figures;
-  std::vector<double> sizes;
-  for (const double error : errors) {
-    figures.bias += error;
-    figures.rms += error * error;
-    sizes.push_back(std::abs(error));
-  }
-  const auto count = static_cast<double>(errors.size());
-  figures.bias /= count;
-  figures.rms = std::sqrt(figures.rms / count);
-  std::sort(sizes.begin(), sizes.end());
-  figures.p95 = sizes[static_cast<std::size_t>(std::ceil(0.95 * count)) - 1];
-  figures.maximum = sizes.back();
-  return figures;
-}
-
 std::vector<double> errorsOf(const std::vector<SensorPair>& pairs) {
   std::vector<double> errors;
   for (const SensorPair& pair : pairs) errors.push_back(pair.error);
@@ -152,6 +133,25 @@ std::string gridNames(const SensorTable& table) {
 }
 
 }  // namespace
+
+ErrorFigures figuresOf(const std::vector<double>& errors) {
+  const bool isKnown = std::none_of(errors.begin(), errors.end(), [](double e) { return std::isnan(e); });
+  if (errors.empty() || !isKnown) return {kNone, kNone, kNone, kNone};
+  ErrorFigures figures;
+  std::vector<double> sizes;
+  for (const double error : errors) {
+    figures.bias += error;
+    figures.rms += error * error;
+    sizes.push_back(std::abs(error));
+  }
+  const auto count = static_cast<double>(errors.size());
+  figures.bias /= count;
+  figures.rms = std::sqrt(figures.rms / count);
+  std::sort(sizes.begin(), sizes.end());
+  figures.p95 = sizes[static_cast<std::size_t>(std::ceil(0.95 * count)) - 1];
+  figures.maximum = sizes.back();
+  return figures;
+}
 
 Comparison compareTables(const std::string& firstName, const SensorTable& first,
                          const std::string& referenceName, const SensorTable& reference) {

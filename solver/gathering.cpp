@@ -23,6 +23,7 @@ SolvedDomain<K> gatheringHR(const SolvedLight<K>& light, std::int32_t domain, Hi
   const float first_lm = world.layout.strength(emitted_lm) + world.layout.strength(entering_lm);
   if (!(first_lm > 0.0F)) return solved;
   transport.setFirstLight(first_lm);
+  solved.threshold_lm = transport.threshold_lm();
 
   // Light from outside is emission's like: it arrives once, and every step adds it again.
   std::vector<Columns<K>>& irradiance_lx = solved.radiosity.irradiance_lx;

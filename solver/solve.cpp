@@ -5,10 +5,13 @@
 #include <set>
 
 #include <geometry/parallel.hpp>
+#include <import/error.hpp>
 #include <solver/solution.hpp>
 
+#include "gathering.hpp"
 #include "importance.hpp"
 #include "outside.hpp"
+#include "plain.hpp"
 #include "reconstruction.hpp"
 #include "rooms.hpp"
 #include "sensors.hpp"
@@ -24,6 +27,7 @@ struct Tuning {
   TransportSettings transport;
   GatherSettings sensors;
   GatherSettings views;
+  PlainSettings plain;
   double solverError;  ///< relative, of reflected light that a sensor gathers
 };
 
@@ -37,6 +41,16 @@ Tuning tuningFor(double accuracy, const SolveOptions& options) {
   tuning.sensors.deviationMost = static_cast<float>(0.3 * accuracy);
   tuning.views = {{96.0F, 2.0F}, 64};
   tuning.solverError = 0.01 + 0.5 * accuracy;
+  tuning.plain.elementSize_m = static_cast<float>(0.4 / std::sqrt(finer));
+  tuning.plain.raysPerElement = static_cast<std::uint32_t>(std::max(128.0 * finer, 8.0));
+  tuning.plain.direct = {static_cast<float>(15.0 * finer), static_cast<float>(2.0 * finer)};
+  tuning.plain.endShare = 0.02 * accuracy;
+
+  if (options.epsilon) tuning.transport.epsilon = *options.epsilon;
+  if (options.sensorRays) {
+    const float ofPolygons = static_cast<float>(*options.sensorRays) / 2.0F;
+    tuning.sensors = {{ofPolygons, ofPolygons}, *options.sensorRays};
+  }
   return tuning;
 }
 
@@ -65,6 +79,33 @@ void report(const SolveOptions& options, const std::string& stage, double fracti
   if (options.progress) options.progress(stage, fraction);
 }
 
+/// Plain radiosity as if it had taken one step without links.
+template <int K>
+SolvedDomain<K> plainDomain(const SolvedLight<K>& light, std::int32_t domain, Hierarchy tree,
+                            const PlainSettings& settings) {
+  const Stopwatch watch;
+  SolvedDomain<K> solved(light.world(), domain, tree);
+  PlainSolution<K> plain = plainRadiosity(light, domain, std::move(tree), settings);
+  solved.radiosity = std::move(plain.radiosity);
+  Tally tally;
+  tally.rays = plain.rays;
+  solved.addStatistics(tally, 0, 0.0F, watch.seconds());
+  return solved;
+}
+
+/// The outside is always shot: the methods differ in what they do with the light that comes in.
+template <int K>
+SolvedDomain<K> solveDomain(const SolvedLight<K>& light, std::int32_t domain, Hierarchy tree,
+                            const SolveOptions& options, const Tuning& tuning) {
+  const bool isOpen = light.world().building.domains[static_cast<std::size_t>(domain)].open;
+  if (options.method == Method::gathering && !isOpen)
+    return gatheringHR(light, domain, std::move(tree), tuning.transport);
+  if (options.method == Method::plain && !isOpen)
+    return plainDomain(light, domain, std::move(tree), tuning.plain);
+  LinkCache cache(options.linkCacheBytes);
+  return shootingHR(light, domain, std::move(tree), tuning.transport, cache);
+}
+
 template <int K>
 void solveDomains(const World& world, const Study& study, const SolveOptions& options, const Tuning& tuning,
                   SolvedLight<K>& light, Solution& solution) {
@@ -81,15 +122,14 @@ void solveDomains(const World& world, const Study& study, const SolveOptions& op
     Hierarchy tree = air.open ? outsideTree(world, study, domain, sides)
                               : Hierarchy(world.pieces(), sides, world.rays.origin(),
                                           importanceOf(world, study, domain, sides));
-    LinkCache cache(options.linkCacheBytes);
-    SolvedDomain<K> solved = shootingHR(light, domain, std::move(tree), tuning.transport, cache);
+    SolvedDomain<K> solved = solveDomain(light, domain, std::move(tree), options, tuning);
     solution.iterations.insert(solution.iterations.end(), solved.statistics.begin(), solved.statistics.end());
     if (!air.open) solution.balances.push_back(solved.balance);
     for (Diagnosis& diagnosis : solved.diagnoses) addDiagnosis(solution.diagnoses, std::move(diagnosis));
     const Hierarchy& grown = solved.radiosity.tree;
     solution.elements += solved.statistics.empty() ? 0 : solved.statistics.back().elements;
     solution.hierarchyBytes += grown.bytes() + grown.size() * (sizeof(Columns<K>) + sizeof(Plane<K>));
-    reconstruct(world, solved.threshold_lm, solved.radiosity);
+    if (solved.threshold_lm > 0.0F) reconstruct(world, solved.threshold_lm, solved.radiosity);
     light.add(domain, std::move(solved.radiosity));
   }
 }
@@ -123,6 +163,8 @@ Solution solveColumns(const World& world, const Study& study, const SolveOptions
 
 Solution solve(const Building& building, const Study& study, const SolveOptions& options) {
   const World world(building, study);
+  if (options.method == Method::plain && (world.sun || !world.lamps.empty()))
+    throw InputError("plain radiosity knows neither the sun's beam nor luminaires; chart without it");
   Solution solution;
   withThreads(options.threads, [&] {
     const int used = world.layout.used();

@@ -174,7 +174,7 @@ void writeBound(const Scene& scene, const Method& method, const Options& options
 
 void measureScene(const std::string& name, const LitRoom& room, const Options& options, Tables& tables) {
   const Probes probes(room, options.rays);
-  const RivalSettings rival{0.15F, 512, 4, {60.0F, 4.0F}, 1e-5};
+  const PlainSettings rival{0.15F, 512, 4, {60.0F, 4.0F}, 1e-5};
   const Scene scene{name, room, probes, truthAt(probes, room, rival, 12)};
   std::cout << name << ": " << room.building.model.pieces.size() << " polygons, " << probes.size()
             << " points; largest reflectance " << probes.largestReflectance() << std::endl;

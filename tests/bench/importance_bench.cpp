@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "importance.hpp"
-#include "rival.hpp"
+#include "plain.hpp"
 #include "sensors.hpp"
 #include "stage.hpp"
 #include "watch.hpp"
@@ -48,9 +48,9 @@ void measureOn(const AskedScene& scene, double truthSize_m, int seeds, std::ostr
   if (stage.domains.size() != 1) throw std::runtime_error(scene.name + " has more rooms than one");
   const std::vector<std::uint32_t> sides = sidesOf(building, stage.domains[0]);
 
-  const RivalSettings settings{static_cast<float>(truthSize_m), 512, 1, {120.0F, 6.0F}, 1e-4};
+  const PlainSettings settings{static_cast<float>(truthSize_m), 512, 1, {120.0F, 6.0F}, 1e-4};
   const std::vector<double> truth_lx =
-      sensed(stage, rivalRadiosity(stage.outside, stage.domains[0], stage.trees[0], settings).radiosity);
+      sensed(stage, plainRadiosity(stage.outside, stage.domains[0], stage.trees[0], settings).radiosity);
   double mean_lx = 0.0;
   for (const double value_lx : truth_lx) mean_lx += value_lx / static_cast<double>(truth_lx.size());
   std::cerr << scene.name << ": " << truth_lx.size() << " sensors, mean " << mean_lx << " lx\n";

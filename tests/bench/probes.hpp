@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "rival.hpp"
+#include "plain.hpp"
 #include "runs.hpp"
 #include "truth.hpp"
 
@@ -163,7 +163,7 @@ struct PartialSums {
 };
 
 /// By the rival on even elements, gathered at each probe: independent of hierarchies and links.
-inline PartialSums truthAt(const Probes& probes, const LitRoom& room, const RivalSettings& settings,
+inline PartialSums truthAt(const Probes& probes, const LitRoom& room, const PlainSettings& settings,
                            std::size_t partialSums) {
   PartialSums truth;
   truth.partial.resize(partialSums, {PointValues(probes.size()), PointValues(probes.size())});
@@ -183,7 +183,7 @@ inline PartialSums truthAt(const Probes& probes, const LitRoom& room, const Riva
       const auto reflections = static_cast<std::size_t>(iteration) + 2;
       if (reflections < partialSums) truth.partial[reflections][half] = gather(radiosity);
     };
-    const RivalSolution<1> solution = rivalRadiosity(
+    const PlainSolution<1> solution = plainRadiosity(
         room.stage.outside, room.domain(), seededTree(room.stage, 0, 0x7121 + half), settings, keep);
     truth.limit[half] = gather(solution.radiosity);
     solved.push_back(measure(room.stage, {solution.radiosity}));

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "paths.hpp"
-#include "rival.hpp"
+#include "plain.hpp"
 #include "stage.hpp"
 
 namespace clerestory {
@@ -22,7 +22,7 @@ struct Truth {
 };
 
 struct TruthSettings {
-  RivalSettings rival;
+  PlainSettings rival;
   std::uint32_t gatherRays = 4096;  ///< of a place
   std::size_t paths = 2000000;      ///< of all surfaces
   int runs = 2;                     ///< with seeds of their own, that differ from those of what is compared
@@ -104,8 +104,8 @@ Measured convergedRun(const Stage<K>& stage, const TruthSettings& settings, std:
   SolvedLight<K> light = stage.outside;
   std::vector<Radiosity<K>> rooms;
   for (std::size_t i = 0; i < stage.domains.size(); ++i) {
-    RivalSolution<K> solution =
-        rivalRadiosity(stage.outside, stage.domains[i], seededTree(stage, i, seed), settings.rival);
+    PlainSolution<K> solution =
+        plainRadiosity(stage.outside, stage.domains[i], seededTree(stage, i, seed), settings.rival);
     std::cerr << "  " << solution.elements << " elements, " << solution.rays << " rays, leaks "
               << 100.0 * solution.leakedShare << " %\n";
     rooms.push_back(solution.radiosity);

@@ -40,9 +40,9 @@ template <int K>
 using Method = std::function<Radiosity<K>(std::size_t room, Hierarchy tree, Run& run)>;
 
 template <int K>
-Method<K> rivalMethod(const Stage<K>& stage, const RivalSettings& settings) {
+Method<K> rivalMethod(const Stage<K>& stage, const PlainSettings& settings) {
   return [&stage, settings](std::size_t room, Hierarchy tree, Run& run) {
-    RivalSolution<K> solution = rivalRadiosity(stage.outside, stage.domains[room], std::move(tree), settings);
+    PlainSolution<K> solution = plainRadiosity(stage.outside, stage.domains[room], std::move(tree), settings);
     run.directSeconds += solution.directSeconds;
     run.elements += static_cast<double>(solution.elements);
     run.rays += static_cast<double>(solution.rays);
@@ -128,7 +128,7 @@ void sweepRival(const Stage<K>& stage, const Truth& truth, const Options& option
             directPerArea / (static_cast<double>(size_m) * static_cast<double>(size_m)) +
             secondsPerRay * elements * rays;
         if (predicted_s > options.longest_s) break;
-        const RivalSettings settings{size_m, rays, direct.points, direct.samples, 1e-3};
+        const PlainSettings settings{size_m, rays, direct.points, direct.samples, 1e-3};
         const Run run = measureRun(stage, truth, options.seeds, "rival",
                                    named({{static_cast<double>(size_m), "m"},
                                           {rays, "r"},

@@ -28,6 +28,9 @@ struct ErrorFigures {
   double maximum = 0.0;  ///< largest size
 };
 
+/// NaN where there are no errors, or one of them is.
+ErrorFigures figuresOf(const std::vector<double>& errors);
+
 struct GridComparison {
   std::string name;                              ///< empty where neither table has grids
   std::vector<SensorPair> pairs;                 ///< in the first table's order; may be empty

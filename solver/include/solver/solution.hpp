@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -95,8 +96,18 @@ struct Solution {
   std::vector<Diagnosis> diagnoses;
 };
 
+/// How the radiosity between surfaces is found. Studies shoot; the others are there to be charted against.
+enum class Method {
+  shooting,   ///< shooting hierarchical radiosity
+  gathering,  ///< the same by Jacobi steps over stored links
+  plain       ///< uniform elements, cosine rays, Jacobi steps; knows neither the sun's beam nor luminaires
+};
+
 /// What shapes a solve beside the study. Results do not depend on threads and linkCacheBytes.
 struct SolveOptions {
+  Method method = Method::shooting;
+  std::optional<float> epsilon;             ///< instead of the threshold that the accuracy sets
+  std::optional<std::uint32_t> sensorRays;  ///< of every sensor, instead of as many as the accuracy needs
   int threads = 0;  ///< 0: all
   std::size_t linkCacheBytes = std::size_t{16} << 20;
   std::size_t memoryBytes = std::size_t{4} << 30;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plain rival of the solver: radiosity over uniform elements, cosine rays traced once, Jacobi iterations.
+// What shooting is charted against: plain radiosity over uniform elements, cosine rays traced once, Jacobi
+// iterations.
 #pragma once
 
 #include <functional>
@@ -9,8 +10,8 @@
 
 namespace clerestory {
 
-/// What decides how finely the rival works.
-struct RivalSettings {
+/// What decides how finely plain radiosity works.
+struct PlainSettings {
   float elementSize_m = 0.4F;          ///< elements fit the circle about a square of this size
   std::uint32_t raysPerElement = 128;  ///< cosine rays, for the light between surfaces
   std::uint32_t directPoints = 1;      ///< of an element, for light from portals and emitters
@@ -18,9 +19,9 @@ struct RivalSettings {
   double endShare = 1e-3;              ///< change of the mean illuminance that ends the iterations
 };
 
-/// A domain as the rival has solved it, and what that took.
+/// A domain as it was solved, and what that took.
 template <int K>
-struct RivalSolution {
+struct PlainSolution {
   Radiosity<K> radiosity;
   std::uint64_t elements = 0;
   std::uint64_t rays = 0;  ///< of both kinds
@@ -36,7 +37,7 @@ using AfterIteration = std::function<void(int iteration, const Radiosity<K>& rad
 /// division, the light from portals and emitters at a point (direct.hpp), glass as a diffuse reflector.
 /// Random numbers come from the tree's keys.
 template <int K>
-RivalSolution<K> rivalRadiosity(const SolvedLight<K>& light, std::int32_t domain, Hierarchy tree,
-                                const RivalSettings& settings, const AfterIteration<K>& after = {});
+PlainSolution<K> plainRadiosity(const SolvedLight<K>& light, std::int32_t domain, Hierarchy tree,
+                                const PlainSettings& settings, const AfterIteration<K>& after = {});
 
 }  // namespace clerestory

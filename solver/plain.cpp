@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // E = light from portals and emitters + mean of the exitance that cosine rays meet, iterated.
-#include "rival.hpp"
+#include "plain.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -53,7 +53,7 @@ std::vector<NodeIndex> leavesOf(const Hierarchy& tree) {
 template <int K>
 std::uint64_t receiveDirect(const SolvedLight<K>& light, const SolvedLight<K>& emitting, std::int32_t domain,
                             const Hierarchy& tree, const std::vector<NodeIndex>& leaves,
-                            const RivalSettings& settings, std::vector<Columns<K>>& direct_lx) {
+                            const PlainSettings& settings, std::vector<Columns<K>>& direct_lx) {
   std::vector<std::uint32_t> rays(leaves.size(), 0);
   forEachIndex(leaves.size(), 16, [&](std::size_t i) {
     const NodeIndex leaf = leaves[i];
@@ -105,7 +105,7 @@ std::vector<RayEnd> traceRays(const World& world, const Hierarchy& tree, const s
 template <int K>
 void iterate(const World& world, Radiosity<K>& radiosity, const std::vector<NodeIndex>& leaves,
              const std::vector<Columns<K>>& direct_lx, const std::vector<RayEnd>& ends,
-             const RivalSettings& settings, const AfterIteration<K>& afterIteration) {
+             const PlainSettings& settings, const AfterIteration<K>& afterIteration) {
   constexpr int iterationsMax = 2000;
   const Hierarchy& tree = radiosity.tree;
   radiosity.irradiance_lx = direct_lx;
@@ -141,11 +141,11 @@ void iterate(const World& world, Radiosity<K>& radiosity, const std::vector<Node
 }  // namespace
 
 template <int K>
-RivalSolution<K> rivalRadiosity(const SolvedLight<K>& light, std::int32_t domain, Hierarchy tree,
-                                const RivalSettings& settings, const AfterIteration<K>& after) {
+PlainSolution<K> plainRadiosity(const SolvedLight<K>& light, std::int32_t domain, Hierarchy tree,
+                                const PlainSettings& settings, const AfterIteration<K>& after) {
   using Clock = std::chrono::steady_clock;
   const World& world = light.world();
-  RivalSolution<K> result{unlit<K>(world, std::move(tree))};
+  PlainSolution<K> result{unlit<K>(world, std::move(tree))};
   Radiosity<K>& radiosity = result.radiosity;
   SolvedLight<K> emitting(world);  // emitters are whole sides: the undivided tree serves
   if (!radiosity.emitters.empty()) emitting.add(domain, radiosity);
@@ -170,8 +170,8 @@ RivalSolution<K> rivalRadiosity(const SolvedLight<K>& light, std::int32_t domain
 }
 
 #define CLERESTORY_INSTANTIATE(K)                                                             \
-  template RivalSolution<K> rivalRadiosity<K>(const SolvedLight<K>&, std::int32_t, Hierarchy, \
-                                              const RivalSettings&, const AfterIteration<K>&);
+  template PlainSolution<K> plainRadiosity<K>(const SolvedLight<K>&, std::int32_t, Hierarchy, \
+                                              const PlainSettings&, const AfterIteration<K>&);
 CLERESTORY_STUDY_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory
