@@ -98,8 +98,12 @@ class Hierarchy {
 
   /// The child of a divided element that holds a point of it.
   [[nodiscard]] NodeIndex childAt(NodeIndex element, const glm::vec3& point) const {
+    return firstChild[element] + whichChild(element, point);
+  }
+  /// 0 for its first child, 1 for its second.
+  [[nodiscard]] NodeIndex whichChild(NodeIndex element, const glm::vec3& point) const {
     const glm::vec4& plane = split[element];
-    return firstChild[element] + (glm::dot(glm::vec3(plane), point) + plane.w > 0.0F ? 1U : 0U);
+    return glm::dot(glm::vec3(plane), point) + plane.w > 0.0F ? 1U : 0U;
   }
   /// The leaf of a side's tree that holds a point of the side.
   [[nodiscard]] NodeIndex leafAt(NodeIndex sideRoot, const glm::vec3& point) const;

@@ -242,11 +242,12 @@ bool Interactions<K>::leavesToRays(const Receiver& receiver, std::span<const Sen
 }
 
 template <int K>
-Received<K> Interactions<K>::receiveWeak(const Receiver& receiver, WeakSenders& weak, Tally& tally) const {
+void Interactions<K>::receiveWeak(const Receiver& receiver, WeakSenders& weak, Incoming<K>& incoming,
+                                  Tally& tally) const {
   const auto rays =
       static_cast<std::uint32_t>(std::clamp(raysNeeded(weak.variance_lm2), weakRaysLeast, weakRaysMost));
   tally.rays += rays;
-  return lightOfWeak(world_, tree_, unshot_, treeSideOf_, receiver, weak.nodes, rays);
+  receiveFromWeak(world_, tree_, unshot_, treeSideOf_, receiver, weak.nodes, rays, incoming);
 }
 
 template <int K>
@@ -313,7 +314,8 @@ std::uint32_t Interactions<K>::raysOf(const Receiver& receiver, const Link& link
 
 // Pairs of the spots of both ends, in an order that their keys choose. Rays end on the contents of clusters.
 template <int K>
-void Interactions<K>::layRays(const Receiver& receiver, const Candidate& candidate, RayBatch& batch) const {
+void Interactions<K>::layRays(const Receiver& receiver, const Candidate<K>& candidate,
+                              RayBatch& batch) const {
   const NodeIndex sender = candidate.sender;
   const bool anyCluster = receiver.isCluster() || tree_.isCluster(sender);
   const std::uint32_t count = raysOf(receiver, candidate.link);
@@ -339,45 +341,123 @@ void Interactions<K>::layRays(const Receiver& receiver, const Candidate& candida
     ++cast;
     batch.segments.push_back({from, to});
     batch.kernel.push_back(leaving * arriving / (squared * squared));
+    batch.spot.push_back(static_cast<std::uint8_t>(there));
   }
 }
 
+// Rays of links that are not known are cast; of known ones it is kept which passed.
 template <int K>
-void Interactions<K>::castRays(const Receiver& receiver, std::span<Candidate> candidates, RayBatch& batch,
+void Interactions<K>::castRays(const Receiver& receiver, std::span<Candidate<K>> candidates, RayBatch& batch,
                                Tally& tally) const {
-  batch.segments.clear();
-  batch.kernel.clear();
-  batch.firstRay.clear();
-  for (const Candidate& candidate : candidates) {
+  const auto layAll = [&](bool known) {
+    batch.clear();
+    for (const Candidate<K>& candidate : candidates) {
+      batch.firstRay.push_back(static_cast<std::uint32_t>(batch.segments.size()));
+      if (candidate.isKnown == known) layRays(receiver, candidate, batch);
+    }
     batch.firstRay.push_back(static_cast<std::uint32_t>(batch.segments.size()));
-    if (!candidate.isKnown) layRays(receiver, candidate, batch);
-  }
-  batch.firstRay.push_back(static_cast<std::uint32_t>(batch.segments.size()));
-  const std::size_t count = batch.segments.size();
-  tally.rays += count;
-  batch.blocked.resize(count);
-  batch.seen.resize(count);
+    batch.blocked.resize(batch.segments.size());
+    batch.seen.resize(batch.segments.size());
+  };
+  const auto weighAll = [&](bool known) {
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (candidates[i].isKnown == known)
+        weighRays(receiver, candidates[i], batch, batch.firstRay[i], batch.firstRay[i + 1]);
+    }
+  };
+  layAll(false);
+  tally.rays += batch.segments.size();
   world_.visibility(batch.segments, batch.blocked, batch.seen);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (candidates[i].isKnown) continue;
-    float total = 0.0F;
-    float seen = 0.0F;
-    for (std::size_t ray = batch.firstRay[i]; ray < batch.firstRay[i + 1]; ++ray) {
-      total += batch.kernel[ray];
-      seen += batch.kernel[ray] * batch.seen[ray];
-    }
-    candidates[i].link.visibility = Link::packVisibility(total > 0.0F ? std::min(seen / total, 1.0F) : 0.0F);
+    for (std::size_t ray = batch.firstRay[i]; ray < batch.firstRay[i + 1]; ++ray)
+      candidates[i].link.passed |=
+          static_cast<std::uint16_t>((1U - batch.blocked[ray]) << (ray - batch.firstRay[i]));
   }
+  weighAll(false);
+
+  layAll(true);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    for (std::size_t ray = batch.firstRay[i]; ray < batch.firstRay[i + 1]; ++ray) {
+      const bool passed = ((candidates[i].link.passed >> (ray - batch.firstRay[i])) & 1U) != 0;
+      batch.seen[ray] =
+          passed ? world_.innerTransmittance(batch.segments[ray].from, batch.segments[ray].to) : 0.0F;
+    }
+  }
+  weighAll(true);
 }
 
 template <int K>
-Verdict Interactions<K>::judgeSeen(const Receiver& receiver, const Candidate& candidate) const {
+void Interactions<K>::weighRays(const Receiver& receiver, Candidate<K>& candidate, const RayBatch& batch,
+                                std::size_t first, std::size_t last) const {
+  float total = 0.0F;
+  float seen = 0.0F;
+  for (std::size_t ray = first; ray < last; ++ray) {
+    total += batch.kernel[ray];
+    seen += batch.kernel[ray] * batch.seen[ray];
+  }
+  candidate.visible = total > 0.0F ? std::min(seen / total, 1.0F) : 0.0F;
+  for (int c = 0; c < K; ++c) candidate.lit[c] = candidate.visible;
+  if (candidate.visible > 0.0F && candidate.visible < 1.0F)
+    shareLight(receiver, candidate, batch, first, last);
+}
+
+// Where a link is half in shadow, means err the same way for all links. What is hidden of an uneven sender is
+// rather its dark part, since what lights it sees it too: shares of its light are taken by radiosity. And the
+// hidden part of a receiver is hidden from others too: its children get what their own rays brought.
+template <int K>
+void Interactions<K>::shareLight(const Receiver& receiver, Candidate<K>& candidate, const RayBatch& batch,
+                                 std::size_t first, std::size_t last) const {
+  const NodeIndex sender = candidate.sender;
+  const bool isEven = !(unshot_.highest[sender] > unshot_.lowest[sender]);
+  const bool hasChildren = receiver.node != noNode && !receiver.isCluster() && !tree_.isLeaf(receiver.node);
+  if (isEven && !hasChildren) return;
+  Columns<K> sent;
+  std::array<Columns<K>, 2> arriving;
+  std::array<float, 2> open{};
+  std::array<float, 2> rays{};
+  for (std::size_t ray = first; ray < last; ++ray) {
+    const Columns<K>& own = isEven ? unshot_.radiosity_lm_m2[sender] : radiosityAt(sender, batch.spot[ray]);
+    const std::size_t child = hasChildren ? tree_.whichChild(receiver.node, batch.segments[ray].from) : 0;
+    const float passing = batch.kernel[ray] * batch.seen[ray];
+    sent += batch.kernel[ray] * own;
+    arriving[child] += passing * own;
+    open[child] += passing;
+    rays[child] += 1.0F;
+  }
+  const Columns<K> all = arriving[0] + arriving[1];
+  for (int c = 0; c < K; ++c) {
+    if (sent[c] > 0.0F) candidate.lit[c] = all[c] / sent[c];
+  }
+  candidate.differs = rays[0] > 0.0F && rays[1] > 0.0F;
+  if (!candidate.differs) return;
+  const float share = tree_.area_m2[tree_.firstChild[receiver.node]] / receiver.area_m2;
+  const auto ofMean = [&](float one, float other, std::size_t child) {
+    const std::array<float, 2> means = {one / rays[0], other / rays[1]};
+    const float mean = share * means[0] + (1.0F - share) * means[1];
+    return mean > 0.0F ? means[child] / mean : 1.0F;
+  };
+  for (std::size_t child = 0; child < 2; ++child) {
+    candidate.viewOnChild[child] = ofMean(open[0], open[1], child);
+    for (int c = 0; c < K; ++c) candidate.onChild[child][c] = ofMean(arriving[0][c], arriving[1][c], child);
+  }
+}
+
+/// Radiosity at a spot of a sender.
+template <int K>
+const Columns<K>& Interactions<K>::radiosityAt(NodeIndex sender, std::size_t spot) const {
+  const NodeIndex root = tree_.isCluster(sender) ? tree_.sides[tree_.spotSides[sender][spot]].root : sender;
+  return unshot_.radiosity_lm_m2[tree_.leafAt(root, tree_.spots[sender][spot])];
+}
+
+template <int K>
+Verdict Interactions<K>::judgeSeen(const Receiver& receiver, const Candidate<K>& candidate) const {
   if (receiver.isCluster() || settings_.oracle == Oracle::transportedPower) return Verdict::accept;
   const NodeIndex sender = candidate.sender;
   const Link& link = candidate.link;
   const bool canRefineReceiver = canDivide(receiver);
   const bool canRefineSender = !tree_.isLeaf(sender);
-  const float visible = link.visible();
+  const float visible = candidate.visible;
   const float arriving = link.formFactor * receiver.weight;
   const float power = unshot_.strength[sender] * arriving;
   const float receiverError = linearDeviation * power * visible * link.spreadOverReceiver();
@@ -402,11 +482,20 @@ Verdict Interactions<K>::judgeSeen(const Receiver& receiver, const Candidate& ca
 }
 
 template <int K>
-void Interactions<K>::add(Incoming<K>& incoming, const Receiver& receiver, const Candidate& candidate) const {
+void Interactions<K>::add(Incoming<K>& incoming, const Receiver& receiver,
+                          const Candidate<K>& candidate) const {
   if (receiver.isCluster()) {
-    addToCluster(*incoming.six, receiver, candidate.sender, candidate.link);
+    addToCluster(*incoming.six, receiver, candidate);
   } else {
-    addToElement(incoming.own, receiver, candidate.sender, candidate.link);
+    Received<K> next;
+    addToElement(next, receiver, candidate);
+    if (!candidate.differs) {
+      incoming.own += next;
+      return;
+    }
+    for (std::size_t child = 0; child < 2; ++child)
+      incoming.ofChildren[child] +=
+          {candidate.onChild[child] * next.irradiance_lx, candidate.viewOnChild[child] * next.view};
   }
 }
 
@@ -450,27 +539,34 @@ Columns<K> Interactions<K>::unevenLight(const Receiver& receiver, NodeIndex send
   return beyond;
 }
 
+/// What a link lets through of what its sender sends.
 template <int K>
-void Interactions<K>::addToElement(Received<K>& next, const Receiver& receiver, NodeIndex sender,
-                                   const Link& link) const {
-  const Received<K> even{unshot_.radiosity_lm_m2[sender], 1.0F};
+Received<K> throughTo(const Candidate<K>& candidate, const Received<K>& sent) {
+  return {candidate.lit * sent.irradiance_lx, candidate.visible * sent.view};
+}
+
+template <int K>
+void Interactions<K>::addToElement(Received<K>& next, const Receiver& receiver,
+                                   const Candidate<K>& candidate) const {
+  const NodeIndex sender = candidate.sender;
+  const Received<K> even{candidate.lit * unshot_.radiosity_lm_m2[sender], candidate.visible};
   if (!tree_.isCluster(sender)) {
-    next += (link.formFactor * link.visible()) * even;
+    next += candidate.link.formFactor * even;
     if (unshot_.highest[sender] > unshot_.lowest[sender])
-      next.irradiance_lx += link.visible() * unevenLight(receiver, sender, link.formFactor);
+      next.irradiance_lx += candidate.lit * unevenLight(receiver, sender, candidate.link.formFactor);
     return;
   }
   const glm::vec3 way = tree_.centre[sender] - receiver.centre;
   const float distance_m = glm::length(way);
   if (distance_m < receiver.radius_m + tree_.radius_m[sender]) {
-    next += (link.visible() * isotropicShare(sender, receiver.radius_m)) * even;
+    next += isotropicShare(sender, receiver.radius_m) * even;
     return;
   }
   const glm::vec3 direction = way / distance_m;
   const float cosine = std::max(glm::dot(direction, receiver.normal), 0.0F);
-  const float factor = link.visible() * cosine /
-                       (std::numbers::pi_v<float> * heldSquare(sender, distance_m, receiver.radius_m));
-  next += factor * sentAlong(sender, -direction);
+  const float factor =
+      cosine / (std::numbers::pi_v<float> * heldSquare(sender, distance_m, receiver.radius_m));
+  next += factor * throughTo(candidate, sentAlong(sender, -direction));
 }
 
 // What a cluster sends in a direction: the parts of its six that go that way. [lm, m²]
@@ -493,14 +589,15 @@ float Interactions<K>::isotropicShare(NodeIndex sender, float receiverRadius_m) 
 }
 
 template <int K>
-void Interactions<K>::addToCluster(SixReceived<K>& next, const Receiver& receiver, NodeIndex sender,
-                                   const Link& link) const {
-  const Received<K> even{unshot_.radiosity_lm_m2[sender], 1.0F};
+void Interactions<K>::addToCluster(SixReceived<K>& next, const Receiver& receiver,
+                                   const Candidate<K>& candidate) const {
+  const NodeIndex sender = candidate.sender;
+  const Received<K> even{candidate.lit * unshot_.radiosity_lm_m2[sender], candidate.visible};
   const glm::vec3 way = tree_.centre[sender] - receiver.centre;
   const float distance_m = glm::length(way);
   if (distance_m < receiver.radius_m + tree_.radius_m[sender]) {
     // From all around; a plane that leans gets up to three directions' worth, half as much again on average.
-    const float share = link.visible() * isotropicShare(sender, receiver.radius_m) / 1.5F;
+    const float share = isotropicShare(sender, receiver.radius_m) / 1.5F;
     for (Received<K>& side : next) side += share * even;
     return;
   }
@@ -508,14 +605,14 @@ void Interactions<K>::addToCluster(SixReceived<K>& next, const Receiver& receive
     if (glm::dot(way, tree_.normal(sender)) >= 0.0F) return;
     const auto polygon = tree_.polygon(sender);
     for (std::size_t k = 0; k < 6; ++k) {
-      next[k] += (link.visible() * pointToPolygon(receiver.centre, sixDirections[k], polygon)) * even;
+      next[k] += pointToPolygon(receiver.centre, sixDirections[k], polygon) * even;
     }
     return;
   }
   const glm::vec3 direction = way / distance_m;
   const float square = heldSquare(sender, distance_m, receiver.radius_m);
   const Received<K> arriving =  // on a plane square to the way
-      (link.visible() / (std::numbers::pi_v<float> * square)) * sentAlong(sender, -direction);
+      (1.0F / (std::numbers::pi_v<float> * square)) * throughTo(candidate, sentAlong(sender, -direction));
   for (std::size_t k = 0; k < 6; ++k) next[k] += alongDirection(direction, k) * arriving;
 }
 

@@ -63,6 +63,7 @@ using SixReceived = std::array<Received<K>, 6>;
 template <int K>
 struct Incoming {
   Received<K> own;
+  std::array<Received<K>, 2> ofChildren;  ///< an element's, where it has them: what they do not share
   SixReceived<K>* six = nullptr;
 };
 
@@ -97,10 +98,18 @@ inline constexpr Sender firstLamp = 0xc0000000U;
 inline constexpr Sender openSky = 0xfffffffeU;
 
 /// A link that the oracle has not refused on sight; its visibility is to be asked for, or known.
+template <int K>
 struct Candidate {
-  NodeIndex sender;
+  NodeIndex sender = noNode;
   Link link;
   bool isKnown = false;  ///< from the cache
+  float visible = 0.0F;  ///< share of the way that is open, by the kernel
+  Columns<K> lit;        ///< share of the sender's light that comes through, by kernel and radiosity
+  /// What an element's two children get of the light, of its mean: of a receiver half in shadow one may have
+  /// all.
+  std::array<Columns<K>, 2> onChild;
+  std::array<float, 2> viewOnChild{};  ///< likewise of its view
+  bool differs = false;                ///< whether they differ
 };
 
 /// The senders that a receiver has left to rays. None holds another.
@@ -114,8 +123,16 @@ struct WeakSenders {
 struct RayBatch {
   std::vector<RayScene::Segment> segments;
   std::vector<float> kernel, seen;
+  std::vector<std::uint8_t> spot;  ///< of the sender, where a ray ends
   std::vector<std::uint8_t> blocked;
   std::vector<std::uint32_t> firstRay;  ///< #candidates + 1
+
+  void clear() {
+    segments.clear();
+    kernel.clear();
+    spot.clear();
+    firstRay.clear();
+  }
 };
 
 /// Interactions within one tree. Reads the tree and its unshot light, writes nothing but what it is handed.
@@ -138,15 +155,15 @@ class Interactions {
   [[nodiscard]] Verdict judgeOnSight(const Receiver& receiver, NodeIndex sender) const;
   /// A link without its visibility.
   [[nodiscard]] Link measureLink(const Receiver& receiver, NodeIndex sender) const;
-  /// Fills the visibility of those candidates that are not known.
-  void castRays(const Receiver& receiver, std::span<Candidate> candidates, RayBatch& batch,
+  /// Fills what is seen of the candidates, and their links' rays where they are not known.
+  void castRays(const Receiver& receiver, std::span<Candidate<K>> candidates, RayBatch& batch,
                 Tally& tally) const;
   /// ORACLE on what the rays have told.
-  [[nodiscard]] Verdict judgeSeen(const Receiver& receiver, const Candidate& candidate) const;
+  [[nodiscard]] Verdict judgeSeen(const Receiver& receiver, const Candidate<K>& candidate) const;
   /// Adds the light that an accepted link brings.
-  void add(Incoming<K>& incoming, const Receiver& receiver, const Candidate& candidate) const;
+  void add(Incoming<K>& incoming, const Receiver& receiver, const Candidate<K>& candidate) const;
   /// Power that a link moves, or could were nothing in its way. [lm]
-  [[nodiscard]] float powerOf(const Receiver& receiver, const Candidate& candidate) const {
+  [[nodiscard]] float powerOf(const Receiver& receiver, const Candidate<K>& candidate) const {
     return unshot_.strength[candidate.sender] * candidate.link.formFactor * receiver.weight;
   }
 
@@ -158,7 +175,7 @@ class Interactions {
   [[nodiscard]] bool leavesToRays(const Receiver& receiver, std::span<const Sender> senders,
                                   WeakSenders& weak) const;
   /// What the weak senders bring.
-  Received<K> receiveWeak(const Receiver& receiver, WeakSenders& weak, Tally& tally) const;
+  void receiveWeak(const Receiver& receiver, WeakSenders& weak, Incoming<K>& incoming, Tally& tally) const;
 
   /// Light from a portal, a luminaire or the open sky: judged, and on `accept` added at once.
   Verdict receiveFromOutside(const Receiver& receiver, Sender sender, Incoming<K>& incoming,
@@ -189,7 +206,12 @@ class Interactions {
   [[nodiscard]] Verdict judgeElement(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
   void measureNear(const Receiver& receiver, NodeIndex sender, float apart, Link& link) const;
   [[nodiscard]] std::uint32_t raysOf(const Receiver& receiver, const Link& link) const;
-  void layRays(const Receiver& receiver, const Candidate& candidate, RayBatch& batch) const;
+  void layRays(const Receiver& receiver, const Candidate<K>& candidate, RayBatch& batch) const;
+  void weighRays(const Receiver& receiver, Candidate<K>& candidate, const RayBatch& batch, std::size_t first,
+                 std::size_t last) const;
+  void shareLight(const Receiver& receiver, Candidate<K>& candidate, const RayBatch& batch, std::size_t first,
+                  std::size_t last) const;
+  [[nodiscard]] const Columns<K>& radiosityAt(NodeIndex sender, std::size_t spot) const;
   [[nodiscard]] float uneven(NodeIndex sender) const;
   /// What is too weak for a link of its own comes by rays, but where links are to be stored or counted.
   [[nodiscard]] bool usesRays() const { return settings_.oracle == Oracle::error && !linksDark; }
@@ -197,9 +219,9 @@ class Interactions {
   /// For the noise that rays may have, by the variance of one.
   [[nodiscard]] float raysNeeded(float variance_lm2) const;
 
-  void addToElement(Received<K>& next, const Receiver& receiver, NodeIndex sender, const Link& link) const;
+  void addToElement(Received<K>& next, const Receiver& receiver, const Candidate<K>& candidate) const;
   [[nodiscard]] Columns<K> unevenLight(const Receiver& receiver, NodeIndex sender, float formFactor) const;
-  void addToCluster(SixReceived<K>& next, const Receiver& receiver, NodeIndex sender, const Link& link) const;
+  void addToCluster(SixReceived<K>& next, const Receiver& receiver, const Candidate<K>& candidate) const;
   [[nodiscard]] float heldSquare(NodeIndex sender, float distance_m, float receiverRadius_m) const;
   [[nodiscard]] Received<K> sentAlong(NodeIndex cluster, const glm::vec3& direction) const;
   [[nodiscard]] float isotropicShare(NodeIndex sender, float receiverRadius_m) const;

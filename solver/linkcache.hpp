@@ -12,20 +12,17 @@
 
 namespace clerestory {
 
-/// What is known of the way from a sender to a receiver: geometry and visibility, no radiosity. Visibility
-/// and spread are kept in 16 bits, so that a link computed anew is the same to the bit as one from the cache.
+/// What is known of the way from a sender to a receiver: geometry and visibility, no radiosity. All of it is
+/// kept as it is here, so that a link computed anew is the same to the bit as one from the cache.
 struct Link {
-  float formFactor = 0.0F;       ///< mean over the receiver, unoccluded; clusters: an estimate
-  std::uint16_t visibility = 0;  ///< of 65535
-  std::uint16_t spread = 0;      ///< (max - min) / mean of the form factor over the receiver, in 1/16384
+  float formFactor = 0.0F;  ///< mean over the receiver, unoccluded; clusters: an estimate
+  std::uint16_t passed =
+      0;  ///< a bit for each of its rays, of which there are 16 at most: nothing opaque met
+  std::uint16_t spread = 0;  ///< (max - min) / mean of the form factor over the receiver, in 1/16384
 
-  static std::uint16_t packVisibility(float value) {
-    return static_cast<std::uint16_t>(value * 65535.0F + 0.5F);
-  }
   static std::uint16_t packSpread(float value) {
     return static_cast<std::uint16_t>(std::min(value, 3.99F) * 16384.0F + 0.5F);
   }
-  [[nodiscard]] float visible() const { return static_cast<float>(visibility) / 65535.0F; }
   [[nodiscard]] float spreadOverReceiver() const { return static_cast<float>(spread) / 16384.0F; }
 };
 

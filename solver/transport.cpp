@@ -78,12 +78,16 @@ void Transport<K>::receive(const Receiver& receiver, std::vector<Sender> senders
   Incoming<K> incoming;
   if (receiver.isCluster()) incoming.six = &receivedByDirection_[receiver.node];
   std::vector<Sender> down = settle(receiver, std::move(senders), incoming, work);
+  const bool hasChildren = receiver.node != noNode && !tree_.isLeaf(receiver.node);
   if (receiver.node != noNode) {
-    received_[receiver.node] = incoming.own;
+    received_[receiver.node] += incoming.own;
+    if (hasChildren && !receiver.isCluster()) {
+      for (NodeIndex child = 0; child < 2; ++child)
+        received_[tree_.firstChild[receiver.node] + child] = incoming.ofChildren[child];
+    }
   } else {
     work.grown[receiver.grown / 2]->received[receiver.grown % 2] = incoming.own;
   }
-  const bool hasChildren = receiver.node != noNode && !tree_.isLeaf(receiver.node);
   if (!down.empty() || (links_ == Links::stored && hasChildren)) descend(receiver, std::move(down), work);
 }
 
@@ -100,7 +104,7 @@ std::vector<Sender> Transport<K>::settle(const Receiver& receiver, std::vector<S
   std::vector<Sender> down;
   std::vector<Sender> next;
   WeakSenders weak;
-  std::vector<Candidate> candidates;
+  std::vector<Candidate<K>> candidates;
   RayBatch batch;
   const auto decide = [&](Verdict verdict, Sender sender) {
     if (verdict == Verdict::refineReceiver) down.push_back(sender);
@@ -130,12 +134,14 @@ std::vector<Sender> Transport<K>::settle(const Receiver& receiver, std::vector<S
       const auto found = std::lower_bound(cached.begin(), cached.end(), sender,
                                           [](const CachedLink& a, NodeIndex b) { return a.sender < b; });
       const bool isKnown = found != cached.end() && found->sender == sender;
-      candidates.push_back(
-          {sender, isKnown ? found->link : interactions_.measureLink(receiver, sender), isKnown});
+      Candidate<K>& candidate = candidates.emplace_back();
+      candidate.sender = sender;
+      candidate.isKnown = isKnown;
+      candidate.link = isKnown ? found->link : interactions_.measureLink(receiver, sender);
       work.tally.reused += isKnown ? 1U : 0U;
     }
     interactions_.castRays(receiver, candidates, batch, work.tally);
-    for (const Candidate& candidate : candidates) {
+    for (const Candidate<K>& candidate : candidates) {
       const Verdict verdict = interactions_.judgeSeen(receiver, candidate);
       if (verdict != Verdict::accept) {
         decide(verdict, candidate.sender);
@@ -151,7 +157,7 @@ std::vector<Sender> Transport<K>::settle(const Receiver& receiver, std::vector<S
     down.insert(down.end(), weak.nodes.begin(), weak.nodes.end());
   } else if (!weak.nodes.empty()) {
     ++work.tally.links;
-    incoming.own += interactions_.receiveWeak(receiver, weak, work.tally);
+    interactions_.receiveWeak(receiver, weak, incoming, work.tally);
   }
   return down;
 }
@@ -192,7 +198,7 @@ void Transport<K>::descend(const Receiver& receiver, std::vector<Sender> senders
 }
 
 template <int K>
-void Transport<K>::keep(const Receiver& receiver, const Candidate& candidate, Work& work) {
+void Transport<K>::keep(const Receiver& receiver, const Candidate<K>& candidate, Work& work) {
   if (!cache_.keeps(interactions_.powerOf(receiver, candidate), receiver.key)) return;
   if (receiver.node != noNode) {
     work.kept.push_back({receiver.node, candidate.sender, candidate.link});

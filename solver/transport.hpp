@@ -80,7 +80,7 @@ class Transport {
   std::vector<Sender> settle(const Receiver& receiver, std::vector<Sender> senders, Incoming<K>& incoming,
                              Work& work);
   void descend(const Receiver& receiver, std::vector<Sender> senders, Work& work);
-  void keep(const Receiver& receiver, const Candidate& candidate, Work& work);
+  void keep(const Receiver& receiver, const Candidate<K>& candidate, Work& work);
 
   void mergeGrown();
   void pushPull();

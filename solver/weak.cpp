@@ -59,14 +59,16 @@ NodeIndex leafOfSenders(const Hierarchy& tree, std::span<const NodeIndex> sender
 }  // namespace
 
 template <int K>
-Received<K> lightOfWeak(const World& world, const Hierarchy& tree, const Unshot<K>& unshot,
-                        std::span<const std::uint32_t> treeSideOf, const Receiver& receiver,
-                        std::vector<NodeIndex>& senders, std::uint32_t rays) {
+void receiveFromWeak(const World& world, const Hierarchy& tree, const Unshot<K>& unshot,
+                     std::span<const std::uint32_t> treeSideOf, const Receiver& receiver,
+                     std::vector<NodeIndex>& senders, std::uint32_t rays, Incoming<K>& incoming) {
   const auto isBefore = [&](NodeIndex a, NodeIndex b) { return firstPlace(tree, a) < firstPlace(tree, b); };
   if (!std::is_sorted(senders.begin(), senders.end(), isBefore))
     std::sort(senders.begin(), senders.end(), isBefore);
   const Sequence sequence(mixKeys(receiver.key, 0x3ea4));
-  Received<K> sum;
+  const bool hasChildren = receiver.node != noNode && !receiver.isCluster() && !tree.isLeaf(receiver.node);
+  std::array<Received<K>, 2> sums;
+  std::array<float, 2> counts{};
   for (std::uint32_t i = 0; i < rays; ++i) {
     // Point and way in four dimensions of one sequence: in the same two of two sequences they would go
     // together.
@@ -74,20 +76,28 @@ Received<K> lightOfWeak(const World& world, const Hierarchy& tree, const Unshot<
     const Start start = startOn(tree, receiver, pick, sequence(i, 0), sequence(i, 1));
     const glm::vec3 from = start.point + rayOffset_m * start.normal;
     const glm::vec3 direction = cosineDirection(start.normal, sequence(i, 2), sequence(i, 3));
+    const std::size_t child = hasChildren ? tree.whichChild(receiver.node, start.point) : 0;
+    counts[child] += 1.0F;
     const auto hit = world.rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
     if (!hit || treeSideOf[hit.side()] == noNode) continue;
     const glm::vec3 to = from + hit.distance_m * direction;
     const NodeIndex leaf = leafOfSenders(tree, senders, treeSideOf[hit.side()], to);
     if (leaf == noNode) continue;
-    sum += world.innerTransmittance(from, to) * Received<K>{unshot.radiosity_lm_m2[leaf], 1.0F};
+    sums[child] += world.innerTransmittance(from, to) * Received<K>{unshot.radiosity_lm_m2[leaf], 1.0F};
   }
-  return (1.0F / static_cast<float>(rays)) * sum;
+  if (hasChildren && counts[0] > 0.0F && counts[1] > 0.0F) {
+    for (std::size_t child = 0; child < 2; ++child)
+      incoming.ofChildren[child] += (1.0F / counts[child]) * sums[child];
+  } else {
+    sums[0] += sums[1];
+    incoming.own += (1.0F / static_cast<float>(rays)) * sums[0];
+  }
 }
 
-#define CLERESTORY_INSTANTIATE(K)                                                       \
-  template Received<K> lightOfWeak<K>(const World&, const Hierarchy&, const Unshot<K>&, \
-                                      std::span<const std::uint32_t>, const Receiver&,  \
-                                      std::vector<NodeIndex>&, std::uint32_t);
+#define CLERESTORY_INSTANTIATE(K)                                                                            \
+  template void receiveFromWeak<K>(const World&, const Hierarchy&, const Unshot<K>&,                         \
+                                   std::span<const std::uint32_t>, const Receiver&, std::vector<NodeIndex>&, \
+                                   std::uint32_t, Incoming<K>&);
 CLERESTORY_TRANSPORT_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

@@ -7,12 +7,13 @@
 
 namespace clerestory {
 
-/// What a receiver gets from `senders`, of which none holds another, by `rays` cosine rays from points all
-/// over it: unbiased, whatever stands between and however close they are. `treeSideOf`: #sides of the
-/// building, the tree's side or noNode. Sorts the senders.
+/// Adds what a receiver gets from `senders`, of which none holds another, by `rays` cosine rays from points
+/// all over it: unbiased, whatever stands between and however close they are. Where it has children, each
+/// gets what came from its own points. `treeSideOf`: #sides of the building, the tree's side or noNode. Sorts
+/// the senders.
 template <int K>
-Received<K> lightOfWeak(const World& world, const Hierarchy& tree, const Unshot<K>& unshot,
-                        std::span<const std::uint32_t> treeSideOf, const Receiver& receiver,
-                        std::vector<NodeIndex>& senders, std::uint32_t rays);
+void receiveFromWeak(const World& world, const Hierarchy& tree, const Unshot<K>& unshot,
+                     std::span<const std::uint32_t> treeSideOf, const Receiver& receiver,
+                     std::vector<NodeIndex>& senders, std::uint32_t rays, Incoming<K>& incoming);
 
 }  // namespace clerestory

@@ -13,24 +13,6 @@
 namespace clerestory {
 namespace {
 
-TEST(Link, PackedVisibilityComesBackAsItWas) {
-  for (std::uint32_t packed = 0; packed <= 65535; ++packed) {
-    Link link;
-    link.visibility = static_cast<std::uint16_t>(packed);
-    EXPECT_EQ(Link::packVisibility(link.visible()), packed);
-  }
-  Link link;
-  link.visibility = Link::packVisibility(1.0F);
-  EXPECT_EQ(link.visible(), 1.0F);
-  link.visibility = Link::packVisibility(0.0F);
-  EXPECT_EQ(link.visible(), 0.0F);
-  for (int i = 0; i <= 1000; ++i) {
-    const float value = static_cast<float>(i) / 1000.0F;
-    link.visibility = Link::packVisibility(value);
-    EXPECT_NEAR(link.visible(), value, 0.5F / 65535.0F + 1e-7F);  // half a step, and the rounding of a float
-  }
-}
-
 TEST(Link, PackedSpreadComesBackWithinHalfAStep) {
   Link link;
   for (int i = 0; i <= 3990; ++i) {

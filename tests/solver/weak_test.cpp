@@ -54,7 +54,14 @@ struct BoxRoom {
   }
 
   [[nodiscard]] Received<1> received(NodeIndex receiver, std::vector<NodeIndex> senders) const {
-    return lightOfWeak<1>(world, tree, unshot, treeSideOf, receiverOf(tree, receiver), senders, 20000);
+    Incoming<1> incoming;
+    receiveFromWeak<1>(world, tree, unshot, treeSideOf, receiverOf(tree, receiver), senders, 20000, incoming);
+    Received<1> sum = incoming.own;
+    if (tree.isLeaf(receiver)) return sum;
+    const float share = tree.area_m2[tree.firstChild[receiver]] / tree.area_m2[receiver];
+    sum += share * incoming.ofChildren[0];
+    sum += (1.0F - share) * incoming.ofChildren[1];
+    return sum;
   }
   [[nodiscard]] float formFactor(NodeIndex receiver, NodeIndex sender) const {
     return meanFormFactor(tree.polygon(receiver), tree.normal(receiver), tree.area_m2[receiver],
