@@ -31,7 +31,7 @@ constexpr float farApart = 0.1F;  // (radii) / distance below which centres stan
 }  // namespace
 
 TransportSettings transportFor(double accuracy) {
-  const double finer = 0.04 / accuracy;
+  const double finer = 0.05 / accuracy;  // 1 at the standard accuracy
   TransportSettings settings;
   settings.epsilon = static_cast<float>(2e-5 / (finer * finer));
   settings.elementMin_m = static_cast<float>(std::max(0.08 / finer, 0.02));
