@@ -8,10 +8,24 @@
 #include <dlfcn.h>
 #endif
 
+#include <new>
+
 #include <import/error.hpp>
 
 namespace clerestory {
 namespace {
+
+// What its two hundred libraries and their threads take of the address space. Where one of them gets no
+// memory while it is loaded, it may end the program without a word.
+constexpr std::size_t roomNeeded = std::size_t{448} << 20;
+
+/// Whether so much could be had; nothing of it is touched.
+bool hasRoom() {
+  void* volatile room = ::operator new(roomNeeded, std::nothrow);
+  const bool found = room != nullptr;
+  ::operator delete(room);
+  return found;
+}
 
 using Entry = const PictureFiles* (*)();
 constexpr const char* kEntry = "clerestoryPictureFiles";
@@ -45,6 +59,8 @@ std::string whyNot() {
 }  // namespace
 
 const PictureFiles& pictureFiles() {
+  static const bool isRoomy = hasRoom();
+  if (!isRoomy) throw std::bad_alloc();
   static const Entry entry = load();  // never unloaded: OpenImageIO keeps threads and caches
   if (entry == nullptr) {
     throw MachineError("the library for pictures cannot be loaded: " + whyNot() +
