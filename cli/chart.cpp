@@ -158,7 +158,8 @@ class Settings {
   }
   /// Sensors are as fine as they get, so that what is left is the threshold's.
   void addThresholds() {
-    for (float epsilon = 1e-3F; epsilon > 2e-7F; epsilon *= 0.25F) {
+    const double finest = 5e-4 * arguments_.finest * arguments_.finest;  // well below what --finest sets
+    for (float epsilon = 1e-3F; static_cast<double>(epsilon) > finest; epsilon *= 0.25F) {
       for (const Method method : {Method::shooting, Method::gathering}) {
         Setting& own =
             add("epsilon", shortest(epsilon), static_cast<double>(epsilon), method, arguments_.finest);

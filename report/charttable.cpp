@@ -108,7 +108,7 @@ ErrorFigures errorsAgainst(const std::vector<double>& ours, const std::vector<do
   double mean = 0.0;
   for (const double value : truth) mean += value / static_cast<double>(truth.size());
   std::vector<double> errors;
-  for (std::size_t i = 0; i < truth.size(); ++i)
+  for (std::size_t i = 0; i < truth.size() && mean > 0.0; ++i)
     errors.push_back((ours[i] - truth[i]) / std::max(truth[i], 0.05 * mean));
   return figuresOf(errors);
 }

@@ -454,4 +454,37 @@ TEST_F(Program, CompareTellsHowFarOneReportLiesFromAnother) {
   expectFailure("compare report brighter.csv -o report", 1, {"choose another"});
 }
 
+TEST_F(Program, ChartGoesOnWhereItWasStopped) {
+  const std::string command = "chart study.toml -o 'the chart' --finest 0.2 --longest 5";
+  const Outcome outcome = run(command);
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.messages;
+  for (const char* method : {"shooting", "gathering", "plain"})
+    EXPECT_NE(outcome.output.find(method), std::string::npos) << outcome.output;
+  const fs::path table = folder_ / "the chart" / "chart.csv";
+  const std::string whole = readFile(table);
+  const Table runs = rowsOf(whole, "series,method,setting,");
+  EXPECT_GT(runs.size(), 20U);
+  for (const auto& row : runs) {
+    EXPECT_GT(std::stod(row[4]), 0.0) << row[2] << ": CPU time";
+    EXPECT_LT(std::stod(row[12]), 60.0) << row[2] << ": RMS error in per cent";
+  }
+  EXPECT_NE(readFile(folder_ / "the chart" / "chart.html").find("<svg"), std::string::npos);
+
+  // Stopped in the middle of a line.
+  std::size_t end = 0;
+  for (int line = 0; line < 10; ++line) end = whole.find('\n', end) + 1;
+  std::ofstream(table, std::ios::binary | std::ios::trunc) << whole.substr(0, end + 7);
+  const Outcome again = run(command);
+  ASSERT_EQ(again.exitCode, 0) << again.messages;
+  EXPECT_NE(again.messages.find("9 runs are there already"), std::string::npos) << again.messages;
+  EXPECT_EQ(readFile(table).substr(0, end), whole.substr(0, end));
+  EXPECT_EQ(rowsOf(readFile(table), "series,method,setting,").size(), runs.size());
+
+  write("other.toml", std::string(kStudy) + "[ground]\nreflectance = 0.3\n");
+  expectFailure("chart other.toml -o 'the chart' --finest 0.2", 1, {"another study"});
+  expectFailure("chart study.toml -o .", 1, {"choose another folder"});
+  write("points.csv", "method,cpu\n");
+  expectFailure("chart study.toml --points points.csv", 1, {"points.csv", "line 1"});
+}
+
 }  // namespace

@@ -108,7 +108,7 @@ struct SolveOptions {
   Method method = Method::shooting;
   std::optional<float> epsilon;             ///< instead of the threshold that the accuracy sets
   std::optional<std::uint32_t> sensorRays;  ///< of every sensor, instead of as many as the accuracy needs
-  int threads = 0;  ///< 0: all
+  int threads = 0;                          ///< 0: all
   std::size_t linkCacheBytes = std::size_t{16} << 20;
   std::size_t memoryBytes = std::size_t{4} << 30;
   bool pictures = true;
