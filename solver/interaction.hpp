@@ -174,7 +174,7 @@ class Interactions {
   /// Adds `senders` to the weak ones and says so, if rays for all of them are cheaper than to look for links.
   [[nodiscard]] bool leavesToRays(const Receiver& receiver, std::span<const Sender> senders,
                                   WeakSenders& weak) const;
-  /// What the weak senders bring.
+  /// Adds what the weak senders bring.
   void receiveWeak(const Receiver& receiver, WeakSenders& weak, Incoming<K>& incoming, Tally& tally) const;
 
   /// Light from a portal, a luminaire or the open sky: judged, and on `accept` added at once.

@@ -15,9 +15,8 @@ namespace clerestory {
 /// What is known of the way from a sender to a receiver: geometry and visibility, no radiosity. All of it is
 /// kept as it is here, so that a link computed anew is the same to the bit as one from the cache.
 struct Link {
-  float formFactor = 0.0F;  ///< mean over the receiver, unoccluded; clusters: an estimate
-  std::uint16_t passed =
-      0;  ///< a bit for each of its rays, of which there are 16 at most: nothing opaque met
+  float formFactor = 0.0F;   ///< mean over the receiver, unoccluded; clusters: an estimate
+  std::uint16_t passed = 0;  ///< a bit for each of its rays, 16 at most: it met nothing opaque
   std::uint16_t spread = 0;  ///< (max - min) / mean of the form factor over the receiver, in 1/16384
 
   static std::uint16_t packSpread(float value) {
