@@ -326,7 +326,7 @@ Values timed(const Building& building, const Study& asked, const Setting& settin
 }
 
 /// The reference of a chart's own making: shooting four times finer than its finest run. Another method at
-/// the same accuracy tells how far it may be off.
+/// the same accuracy tells how far it may be off at sensors, unless a table is given for these.
 void makeReference(const Building& building, const Study& study, const ChartArguments& arguments,
                    bool knowsPlain, ChartFolder& folder, Progress& progress) {
   const double accuracy = 0.25 * arguments.finest;
@@ -338,6 +338,13 @@ void makeReference(const Building& building, const Study& study, const ChartArgu
   };
   ChartRun run;
   const Values truth = timed(building, study, setting, run);
+  if (arguments.reference) {
+    folder.setReference({"Reference of sensors: " + arguments.reference->filename().string() +
+                             ". Of surfaces: this program's own at " + percent(accuracy) + ".",
+                         unknown},
+                        truth);
+    return;
+  }
   setting.method = setting.options.method = knowsPlain ? Method::plain : Method::gathering;
   setting.accuracy = knowsPlain ? accuracy : arguments.finest;
   const Values other = timed(building, study, setting, run);
@@ -459,19 +466,10 @@ void runChart(const ChartArguments& arguments) {
     building = readBuilding(study, diagnoses, [&](const std::string& step) { progress.update(step, 0.0); });
   });
   if (building.grids.empty()) throw InputError("the study has no sensors to chart; give it a [[grid]]");
-  const bool knowsPlain = !study.sky.sun_deg && !study.sky.time && study.luminaires.empty();
+  const bool knowsPlain = !study.sky.sun_deg && !study.sky.time && building.luminaires.empty();
   if (!folder.runs().empty())
     progress.line("going on: " + std::to_string(folder.runs().size()) + " runs are there already");
-  if (!folder.hasReference()) {
-    makeReference(building, study, arguments, knowsPlain, folder, progress);
-    if (given) {
-      ChartReference reference = folder.reference();
-      reference.text = "Reference of sensors: " + arguments.reference->filename().string() +
-                       ". Of surfaces: " + "this program's own at " + percent(0.25 * arguments.finest) + ".";
-      reference.sensorsError = unknown;
-      folder.setReference(reference, folder.truth());
-    }
-  }
+  if (!folder.hasReference()) makeReference(building, study, arguments, knowsPlain, folder, progress);
   runAll(building, study, arguments, knowsPlain, given, folder, progress);
   folder.draw(study.modelFile.stem().string(), points);
   progress.line("the chart is " + folder.page().string());
