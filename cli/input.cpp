@@ -27,18 +27,18 @@ CLI::Validator oneOf(std::initializer_list<std::string> known) {
           ""};
 }
 
+void addAll(const std::vector<Diagnosis>& more, std::vector<Diagnosis>& diagnoses) {
+  for (const Diagnosis& diagnosis : more) addDiagnosis(diagnoses, diagnosis);
+}
+
+}  // namespace
+
 bool isStudyFile(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return ending == ".toml";
 }
-
-void addAll(const std::vector<Diagnosis>& more, std::vector<Diagnosis>& diagnoses) {
-  for (const Diagnosis& diagnosis : more) addDiagnosis(diagnoses, diagnosis);
-}
-
-}  // namespace
 
 void addInputArguments(CLI::App& command, InputArguments& arguments) {
   command.add_option("STUDY.toml|MODEL", arguments.file, "a study, or a model alone: .obj .gltf .glb")

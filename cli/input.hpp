@@ -17,10 +17,13 @@ namespace clerestory {
 
 /// What a command line says about its input.
 struct InputArguments {
-  std::filesystem::path file;  ///< a study where it ends in .toml, else a model
+  std::filesystem::path file;  ///< a study or a model
   std::optional<std::string> units;
   std::optional<std::string> upAxis;
 };
+
+/// Whether the file is a study; else it is a model alone.
+bool isStudyFile(const std::filesystem::path& file);
 
 /// Adds the input and what may be said about it to `command`; they are stored in `arguments`.
 void addInputArguments(CLI::App& command, InputArguments& arguments);

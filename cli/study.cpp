@@ -12,6 +12,7 @@
 #include <memory>
 #include <sstream>
 
+#include <geometry/defaultview.hpp>
 #include <geometry/parallel.hpp>
 #include <report/report.hpp>
 #include <solver/solution.hpp>
@@ -141,6 +142,16 @@ SolveOptions solveOptionsOf(const StudyArguments& arguments, Progress& progress)
   return options;
 }
 
+// A model alone gets a picture too.
+void assumeView(Study& study, const Building& building, Progress& progress) {
+  const std::optional<ViewSettings> view = defaultView(building);
+  if (!view) return;
+  study.views.push_back(*view);
+  study.assumptions.push_back("The view into \"" + view->name +
+                              "\" is from where most of it is seen, at eye height.");
+  progress.line("assumed: " + study.assumptions.back());
+}
+
 void runStudy(const StudyArguments& arguments) {
   const std::filesystem::path folder =
       arguments.folder.empty() ? arguments.input.file.stem().concat("-report") : arguments.folder;
@@ -173,6 +184,7 @@ void runStudy(const StudyArguments& arguments) {
   Building building;
   withThreads(arguments.threads, [&] { building = readBuilding(study, diagnoses, begin); });
   showWarnings();
+  if (!isStudyFile(arguments.input.file) && !arguments.noPictures) assumeView(study, building, progress);
 
   clock.begin("solving");
   const SolveOptions options = solveOptionsOf(arguments, progress);

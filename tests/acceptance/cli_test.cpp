@@ -308,6 +308,10 @@ TEST_F(Program, ReportHoldsTheStudyThatGivesItAgain) {
   const Outcome outcome = run("study room-report/study.toml -o again --quiet");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.messages;
   EXPECT_EQ(readFile(folder_ / "again/sensors.csv"), readFile(folder_ / "room-report/sensors.csv"));
+  // The view that a model alone is given is part of that study.
+  const std::string picture = readFile(folder_ / "room-report/view-Room-1.exr");
+  EXPECT_GT(picture.size(), 1000U);
+  EXPECT_EQ(readFile(folder_ / "again/view-Room-1.exr"), picture);
 }
 
 TEST_F(Program, QuietSaysNothing) {
