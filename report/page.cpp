@@ -151,7 +151,7 @@ std::string summaryTable(const Page& page) {
   for (std::size_t g = 0; g < std::min(grids, mostRows); ++g) {
     const SensorGrid& grid = input.building.grids[g];
     const GridMetrics m = metricsOf(input.solution.grids.at(g), input.study.sky);
-    rows.push_back({escapeHtml(roomName(input.building, grid.room)), illuminanceText(m.illuminance_lx.mean)});
+    rows.push_back({nameHtml(roomName(input.building, grid.room)), illuminanceText(m.illuminance_lx.mean)});
     if (withFactor) rows.back().push_back(factorText(m.daylightFactor_pct->median));
     rows.back().push_back(errorText(m));
     if (anyVerdict) rows.back().push_back(verdict(page, g));
@@ -194,9 +194,9 @@ std::string overviewSection(const Page& page) {
     const SensorGrid& grid = input.building.grids[g];
     const GridMetrics m = metricsOf(input.solution.grids.at(g), input.study.sky);
     std::vector<std::string> row = {
-        escapeHtml(roomName(input.building, grid.room)), escapeHtml(grid.name),
-        illuminanceText(m.illuminance_lx.mean),          illuminanceText(m.illuminance_lx.median),
-        illuminanceText(m.illuminance_lx.min),           fixedNumber(m.uniformity, 2)};
+        nameHtml(roomName(input.building, grid.room)), nameHtml(grid.name),
+        illuminanceText(m.illuminance_lx.mean),        illuminanceText(m.illuminance_lx.median),
+        illuminanceText(m.illuminance_lx.min),         fixedNumber(m.uniformity, 2)};
     if (withFactor) {
       row.push_back(factorText(m.daylightFactor_pct->mean));
       row.push_back(factorText(m.daylightFactor_pct->median));
@@ -210,7 +210,7 @@ std::string overviewSection(const Page& page) {
   std::vector<Column> columns = {{"Room", "", false}, {"Grid", "", false}, {"Mean", "lx"},
                                  {"Median", "lx"},    {"Minimum", "lx"},   {"Uniformity", ""}};
   if (withFactor) {
-    columns.insert(columns.end(), {{"Mean DF", "%"}, {"Median DF", "%"}, {"Area with DF ≥ 2 %", "%"}});
+    columns.insert(columns.end(), {{"Mean DF", "%"}, {"Median DF", "%"}, {"DF ≥ 2 %", "% of area"}});
   }
   columns.push_back({"Error", "%"});
   if (withFactor) columns.push_back({"EN 17037", "", false});
@@ -293,8 +293,8 @@ std::string surfaceTable(const Page& page, std::int32_t room) {
     const SurfaceValue& v = solution.surfaces[i];
     const Material& material = model.materials.at(model.surfaces[v.surface].material);
     ids.push_back("surface-" + std::to_string(i));
-    rows.push_back({escapeHtml(page.surfaceNames[i]),
-                    swatchHtml(material.reflectance) + escapeHtml(material.name), fixedNumber(v.area_m2, 1),
+    rows.push_back({nameHtml(page.surfaceNames[i]),
+                    swatchHtml(material.reflectance) + nameHtml(material.name), fixedNumber(v.area_m2, 1),
                     fixedNumber(luminousY(material.reflectance), 2), illuminanceText(v.illuminanceMean_lx),
                     illuminanceText(v.illuminanceMin_lx), illuminanceText(v.illuminanceMax_lx),
                     roundedNumber(luminousY(v.exitanceMean_lm_m2) / std::numbers::pi)});
@@ -311,17 +311,43 @@ std::string surfaceTable(const Page& page, std::int32_t room) {
                    rows, ids, mostSurfaceRows);
 }
 
+/// Whether all sensors of a room are in the dark: a closed store, or one behind a door.
+bool isDark(const Page& page, const std::vector<std::size_t>& grids) {
+  const auto isGridDark = [&](std::size_t g) {
+    const std::vector<SensorValue>& sensors = page.input.solution.grids.at(g).sensors;
+    return std::all_of(sensors.begin(), sensors.end(),
+                       [](const SensorValue& value) { return value.illuminance_lx == 0.0; });
+  };
+  return !grids.empty() && std::all_of(grids.begin(), grids.end(), isGridDark);
+}
+
+/// A section for each room that light reaches, one for all others, and one for what is outside.
 std::string roomSections(const Page& page) {
   std::string html;
+  std::vector<std::string> darkIds;
+  std::vector<std::vector<std::string>> darkRows;
   const Building& building = page.input.building;
   for (std::size_t r = 0; r < building.rooms.size(); ++r) {
     const Room& room = building.rooms[r];
     const auto index = static_cast<std::int32_t>(r);
-    html += sectionOpening("room-" + std::to_string(r), escapeHtml(room.name), "room");
+    const std::string id = "room-" + std::to_string(r);
+    if (isDark(page, gridsOfRoom(building, index))) {
+      darkIds.push_back(id);
+      darkRows.push_back(
+          {nameHtml(room.name), fixedNumber(room.floorArea_m2, 1), fixedNumber(room.volume_m3, 1)});
+      continue;
+    }
+    html += sectionOpening(id, escapeHtml(room.name), "room");
     html += "<p class=\"lead\">" + fixedNumber(room.floorArea_m2, 1) + " m² of floor, " +
             fixedNumber(room.volume_m3, 1) + " m³ of air.</p>\n";
     for (const std::size_t g : gridsOfRoom(building, index)) html += gridHtml(page, g);
     html += roomChecksHtml(page.input, r) + surfaceTable(page, index) + "</section>\n";
+  }
+  if (!darkRows.empty()) {
+    html += sectionOpening("dark", "Rooms without light") +
+            tableHtml("No light reaches these", {{"Room", "", false}, {"Floor", "m²"}, {"Air", "m³"}},
+                      darkRows, darkIds) +
+            "</section>\n";
   }
   const std::vector<std::size_t> outside = gridsOfRoom(building, -1);
   const std::string surfaces = surfaceTable(page, -1);
@@ -360,7 +386,7 @@ std::string assumptionsSection(const Page& page) {
   std::vector<std::vector<std::string>> rows;
   for (const Diagnosis& diagnosis : page.input.diagnoses) {
     rows.push_back({escapeHtml(diagnosis.code), escapeHtml(withoutFolders(study, diagnosis.message)),
-                    escapeHtml(withoutFolders(study, whereText(diagnosis))),
+                    nameHtml(withoutFolders(study, whereText(diagnosis))),
                     fixedNumber(static_cast<double>(diagnosis.count), 0)});
   }
   html +=
@@ -380,7 +406,7 @@ std::string materialsSection(const Page& page) {
     const double exitance_lm_m2 = luminousY(m.exitance_lm_m2);
     const std::string reflectance = fixedNumber(luminousY(m.reflectance), 2) +
                                     (m.mirrorsAsMatt ? " matt (drawn as metal or mirror)" : "");
-    rows.push_back({swatchHtml(m.reflectance) + escapeHtml(m.name), reflectance, transmittance,
+    rows.push_back({swatchHtml(m.reflectance) + nameHtml(m.name), reflectance, transmittance,
                     m.glazing ? std::to_string(m.panes) : "",
                     exitance_lm_m2 > 0.0 ? roundedNumber(exitance_lm_m2) : ""});
   }

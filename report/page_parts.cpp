@@ -10,8 +10,10 @@ namespace clerestory {
 std::string tableHtml(const std::string& caption, const std::vector<Column>& columns,
                       const std::vector<std::vector<std::string>>& rows, const std::vector<std::string>& ids,
                       std::size_t mostRows) {
-  std::string html = "<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"" + caption +
-                     "\"><table>\n<caption>" + caption + "</caption>\n<thead><tr>";
+  constexpr std::size_t mostUnbroken = 8;  // rows that paper keeps on one page
+  std::string html = std::string("<div class=\"table") + (rows.size() <= mostUnbroken ? " short" : "") +
+                     "\" role=\"region\" tabindex=\"0\" aria-label=\"" + caption + "\"><table>\n<caption>" +
+                     caption + "</caption>\n<thead><tr>";
   for (const Column& column : columns) {
     html += "<th scope=\"col\" data-name=\"" + column.title + "\" data-unit=\"" + column.unit + '"' +
             (column.isNumber ? " class=\"n\">" : ">") + column.title;
@@ -46,6 +48,15 @@ std::string sectionOpening(const std::string& id, const std::string& title, cons
 std::string swatchHtml(const glm::dvec3& reflectance) {
   const DisplayColour colour = {srgbByte(reflectance.x), srgbByte(reflectance.y), srgbByte(reflectance.z)};
   return "<span class=\"swatch\" style=\"background:" + hexColour(colour) + "\"></span>";
+}
+
+std::string nameHtml(const std::string& name) {
+  std::string html;
+  for (const char c : escapeHtml(name)) {
+    html += c;
+    if (c == '_') html += "<wbr>";
+  }
+  return html;
 }
 
 std::string domainName(const Building& building, std::int32_t domain) {

@@ -35,6 +35,9 @@ std::string sectionOpening(const std::string& id, const std::string& title, cons
 /// A square in the colour of a surface under white light.
 std::string swatchHtml(const glm::dvec3& reflectance);
 
+/// A name from the model, escaped, that a line may break after each of its underscores.
+std::string nameHtml(const std::string& name);
+
 /// What a light domain is to a reader: the rooms in it, or the outside.
 std::string domainName(const Building& building, std::int32_t domain);
 

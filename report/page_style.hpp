@@ -132,7 +132,8 @@ svg .off{display:none}
 .picked{margin-top:12px;min-height:4.6em;font-size:.92rem}
 .picked dl{display:flex;flex-wrap:wrap;gap:6px 26px;margin:0 0 6px}
 .picked dt{font-size:.8rem;color:var(--soft)}
-.picked dd{margin:0}
+.picked dd{margin:0;overflow-wrap:anywhere}
+.picked div{min-width:0}
 @media (max-width:900px){.first{grid-template-columns:minmax(0,1fr);gap:20px}}
 @media (max-width:640px){main,header,footer{padding-left:20px;padding-right:20px}header{padding-top:40px}
 h1{font-size:2rem}section{margin:56px 0}}
@@ -144,11 +145,13 @@ body{font-size:10pt}main,header,footer{max-width:none;padding:0}header{padding-t
 section{margin:12mm 0 0;padding-top:6mm}
 .room,.break{break-before:page;margin-top:0;padding-top:0;border-top:0}
 h2,h3,caption{break-after:avoid}figure,dl.figures,tr,li,pre{break-inside:avoid}
-thead{display:table-header-group;break-inside:avoid}th,td{overflow-wrap:break-word!important}tr.chosen th,tr.chosen td{background:none}.plan .sensors rect.chosen{stroke:none}.table{overflow:visible;margin:7mm 0}
+thead{display:table-header-group;break-inside:avoid}tr.chosen th,tr.chosen td{background:none}.plan .sensors rect.chosen{stroke:none}.table{overflow:visible;margin:5mm 0}.short{break-inside:avoid}
 .filter,.fold,.switches,.readout,.exposure,.theme,.screen{display:none!important}
-.first{grid-template-columns:1fr;gap:5mm}.first img{max-height:95mm;width:auto;max-width:100%}tr.more{display:none}th[aria-sort] .sort::after{content:""}
-table{font-size:8.6pt}dl.figures{grid-template-columns:repeat(4,1fr);gap:5mm 6mm}dl.figures dd{font-size:15pt}
-svg.plan{max-height:112mm}a{text-decoration:none}}
+.first{grid-template-columns:1fr;gap:4mm}.views{margin-top:5mm}.views img{max-height:78mm;width:auto;max-width:100%}
+.rest{display:block;margin-top:5mm}.rest figure{margin:5mm 0 0}.falsecolours summary{display:none}.falsecolours .rest{display:grid;grid-template-columns:1fr 1fr;gap:5mm}
+figure{margin:5mm 0}figcaption{margin-top:2mm;font-size:8.6pt}.chart{max-width:150mm}tr.more{display:none}th[aria-sort] .sort::after{content:""}
+table{font-size:8.6pt}dl.figures{grid-template-columns:repeat(4,1fr);gap:3mm 6mm;margin:4mm 0}dl.figures dd{font-size:15pt}
+svg.plan{max-height:92mm}h3{margin:5mm 0 2mm}a{text-decoration:none}}
 )css";
 
 }  // namespace clerestory

@@ -167,7 +167,18 @@
     document.querySelector("header").prepend(button);
   };
 
+  /** Paper cannot unfold anything: what is folded away is printed too. */
+  const unfoldForPrint = () => {
+    let folded = [];
+    addEventListener("beforeprint", () => {
+      folded = [...document.querySelectorAll("details:not([open])")];
+      folded.forEach((details) => (details.open = true));
+    });
+    addEventListener("afterprint", () => folded.forEach((details) => (details.open = false)));
+  };
+
   theme();
+  unfoldForPrint();
   document.querySelectorAll(".table table").forEach((table) => {
     sortable(table);
     filterable(table);
