@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Final-gathered pictures: irradiance on a coarse raster, smoothed along surfaces, then shaded with four rays
-// a pixel.
+// Final-gathered pictures: irradiance once for every surface in every tile of a few pixels, smoothed along
+// surfaces, then shaded with several rays a pixel.
 #include "view.hpp"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <geometry/parallel.hpp>
 #include <geometry/sampling.hpp>
@@ -19,12 +22,23 @@
 namespace clerestory {
 namespace {
 
-constexpr int cell = 3;  // pixels of a side of a cell of the coarse raster
+constexpr int tile = 3;  // pixels of a side
 // Where the rays of a pixel pass through it.
-constexpr std::size_t spotsOfPixel = 4;
-constexpr glm::vec2 spots[spotsOfPixel] = {
-    {0.375F, 0.125F}, {0.875F, 0.375F}, {0.125F, 0.625F}, {0.625F, 0.875F}};
-constexpr int smoothingSteps = 5;  // each doubles the reach: 62 cells after five
+constexpr std::array<glm::vec2, 4> spots = {
+    {{0.375F, 0.125F}, {0.875F, 0.375F}, {0.125F, 0.625F}, {0.625F, 0.875F}}};
+constexpr std::size_t furtherSide = 4;  // 16 further spots where the first differ
+constexpr float contrastLeast = 1.1F;   // between the first, to look further
+constexpr std::size_t spotsMost = spots.size() + furtherSide * furtherSide;
+constexpr float aslantMost = 0.3F;  // cosine under which a surface's edge is looked at pixel by pixel
+constexpr int smoothingSteps = 5;   // each doubles the reach: 62 tiles after five
+
+/// Spots in a lattice that is sheared, so that no two share a row or a column.
+glm::vec2 furtherSpot(std::size_t i) {
+  constexpr auto side = static_cast<float>(furtherSide);
+  const auto column = static_cast<float>(i % furtherSide);
+  const auto row = static_cast<float>(i / furtherSide);
+  return {(column + (row + 0.5F) / side) / side, (row + (column + 0.5F) / side) / side};
+}
 
 GatherSettings shareOf(const GatherSettings& settings, std::size_t count) {
   const float share = 1.0F / static_cast<float>(count);
@@ -34,10 +48,12 @@ GatherSettings shareOf(const GatherSettings& settings, std::size_t count) {
 
 /// A visible point whose irradiance is known.
 template <int K>
-struct Cell {
-  bool isSurface = false;  ///< false: sky or glass, which is shaded ray by ray
+struct Sample {
+  glm::vec2 pixel{0.0F};  ///< where it is seen
+  float reach_px = tile;  ///< how far from there others count more
   glm::vec3 point{0.0F}, normal{0.0F};
   float distance_m = 0.0F;
+  std::int32_t domain = -1;
   Columns<K> direct_lx, reflected_lx;
   float directDeviation_lx = 0.0F, reflectedDeviation_lx = 0.0F;
 };
@@ -51,14 +67,14 @@ class Picture {
         camera_(view),
         eye_(world_.local(view.eye_m)),
         settings_(settings),
-        spotSettings_(shareOf(settings, spotsOfPixel / 2)),
-        columns_((camera_.width() + cell - 1) / cell),
-        rows_((camera_.height() + cell - 1) / cell),
-        cells_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
+        spotSettings_(shareOf(settings, spots.size() / 2)),
+        columns_((camera_.width() + tile - 1) / tile),
+        rows_((camera_.height() + tile - 1) / tile) {}
 
   LuminanceImage render() {
     domain_ = domainAt(world_, eye_);
-    forEachIndex(cells_.size(), 64, [&](std::size_t i) { gatherCell(i); });
+    findSamples();
+    forEachIndex(samples_.size(), 64, [&](std::size_t i) { gatherSample(i); });
     smooth();
     LuminanceImage image{camera_.width(), camera_.height(), {}, {}};
     image.pixels_cd_m2.resize(static_cast<std::size_t>(camera_.width()) *
@@ -69,26 +85,88 @@ class Picture {
   }
 
  private:
-  [[nodiscard]] const Cell<K>& cellAt(int column, int row) const {
-    return cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                  static_cast<std::size_t>(column)];
+  [[nodiscard]] std::span<const Sample<K>> samplesIn(int column, int row) const {
+    const std::size_t at =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    return std::span(samples_).subspan(first_[at], first_[at + 1] - first_[at]);
   }
 
-  void gatherCell(std::size_t i) {
-    const auto column = static_cast<float>(i % static_cast<std::size_t>(columns_));
-    const auto row = static_cast<float>(i / static_cast<std::size_t>(columns_));
-    const auto direction = camera_.direction(cell * (column + 0.5F), cell * (row + 0.5F));
-    if (!direction) return;
+  /// Whether two points lie on one surface, or on facets that stand for a curved one.
+  static bool isOneSurface(const Sample<K>& a, const Sample<K>& b) {
+    return a.domain == b.domain && glm::dot(a.normal, b.normal) > 0.95F &&
+           std::abs(glm::dot(a.point - b.point, a.normal)) < 0.004F * a.distance_m;
+  }
+
+  /// Of each surface that is seen in a tile, the point nearest to the middle of what is seen of it. Of one
+  /// that is seen aslant and ends there, as a window's head, light may be another in each pixel: all points.
+  [[nodiscard]] std::vector<Sample<K>> samplesOfTile(std::size_t i) const {
+    const auto left = static_cast<float>(tile * static_cast<int>(i % static_cast<std::size_t>(columns_)));
+    const auto top = static_cast<float>(tile * static_cast<int>(i / static_cast<std::size_t>(columns_)));
+    std::vector<std::vector<Sample<K>>> surfaces;
+    for (int p = 0; p < tile * tile; ++p) {
+      const glm::vec2 pixel = {left + static_cast<float>(p % tile) + 0.5F,
+                               top + static_cast<float>(p / tile) + 0.5F};
+      const std::optional<Sample<K>> sample = sampleAt(pixel);
+      if (!sample) continue;
+      const auto same = std::find_if(surfaces.begin(), surfaces.end(), [&](const auto& surface) {
+        return isOneSurface(surface.front(), *sample);
+      });
+      (same == surfaces.end() ? surfaces.emplace_back() : *same).push_back(*sample);
+    }
+    std::vector<Sample<K>> samples;
+    for (std::vector<Sample<K>>& surface : surfaces) {
+      const glm::vec3 view = glm::normalize(surface.front().point - eye_);
+      const bool isWhole = surface.size() == static_cast<std::size_t>(tile * tile);
+      if (!isWhole && std::abs(glm::dot(view, surface.front().normal)) < aslantMost) {
+        for (Sample<K>& sample : surface) {
+          sample.reach_px = 1.0F;
+          samples.push_back(sample);
+        }
+        continue;
+      }
+      glm::vec2 sum(0.0F);
+      for (const Sample<K>& sample : surface) sum += sample.pixel;
+      const glm::vec2 middle = sum / static_cast<float>(surface.size());
+      samples.push_back(
+          *std::min_element(surface.begin(), surface.end(), [&](const Sample<K>& a, const Sample<K>& b) {
+            return glm::distance(a.pixel, middle) < glm::distance(b.pixel, middle);
+          }));
+    }
+    return samples;
+  }
+
+  /// The surface that is seen through a place of the picture, before any light is known.
+  [[nodiscard]] std::optional<Sample<K>> sampleAt(const glm::vec2& pixel) const {
+    const auto direction = camera_.direction(pixel.x, pixel.y);
+    if (!direction) return std::nullopt;
     const auto hit = world_.rays.nearest(eye_, *direction, RayScene::Barrier::opaqueAndGlass);
-    if (!hit || world_.materialOf(hit.piece).glazing) return;
+    if (!hit || world_.materialOf(hit.piece).glazing) return std::nullopt;
     const std::int32_t domain = world_.building.sideDomain[hit.side()];
-    if (domain < 0 || light_.of(domain) == nullptr) return;
-    Cell<K>& own = cells_[i];
-    own.isSurface = true;
-    own.point = eye_ + hit.distance_m * *direction;
-    own.normal = world_.normalOf(hit.side());
-    own.distance_m = hit.distance_m;
-    const Gathered<K> arriving = gather(light_, domain, own.point + rayOffset_m * own.normal, own.normal,
+    if (domain < 0 || light_.of(domain) == nullptr) return std::nullopt;
+    Sample<K> sample;
+    sample.pixel = pixel;
+    sample.point = eye_ + hit.distance_m * *direction;
+    sample.normal = world_.normalOf(hit.side());
+    sample.distance_m = hit.distance_m;
+    sample.domain = domain;
+    return sample;
+  }
+
+  void findSamples() {
+    const std::size_t tiles = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
+    std::vector<std::vector<Sample<K>>> found(tiles);
+    forEachIndex(tiles, 64, [&](std::size_t i) { found[i] = samplesOfTile(i); });
+    first_.assign(1, 0);
+    for (std::vector<Sample<K>>& some : found) {
+      samples_.insert(samples_.end(), some.begin(), some.end());
+      first_.push_back(samples_.size());
+      some = {};
+    }
+  }
+
+  void gatherSample(std::size_t i) {
+    Sample<K>& own = samples_[i];
+    const Gathered<K> arriving = gather(light_, own.domain, own.point + rayOffset_m * own.normal, own.normal,
                                         settings_, mixKeys(0x71c, i));
     own.direct_lx = arriving.direct_lx;
     own.reflected_lx = arriving.reflected_lx;
@@ -99,15 +177,15 @@ class Picture {
   /// An à-trous filter along surfaces. Direct light keeps its edges, the shadows, where it changes by more
   /// than its noise; reflected light has none that are sharp and is held only against large steps.
   void smooth() {
-    std::vector<Cell<K>> smoothed = cells_;
+    std::vector<Sample<K>> smoothed = samples_;
     for (int step = 0; step < smoothingSteps; ++step) {
-      forEachIndex(cells_.size(), 256, [&](std::size_t i) {
-        if (!cells_[i].isSurface) return;
+      forEachIndex(first_.size() - 1, 256, [&](std::size_t i) {
         const int column = static_cast<int>(i % static_cast<std::size_t>(columns_));
         const int row = static_cast<int>(i / static_cast<std::size_t>(columns_));
-        smoothCell(column, row, 1 << step, smoothed[i]);
+        for (std::size_t s = first_[i]; s < first_[i + 1]; ++s)
+          smoothSample(samples_[s], column, row, 1 << step, smoothed[s]);
       });
-      std::swap(cells_, smoothed);
+      std::swap(samples_, smoothed);
     }
   }
 
@@ -123,33 +201,34 @@ class Picture {
     }
   };
 
-  void smoothCell(int column, int row, int reach, Cell<K>& result) const {
+  void smoothSample(const Sample<K>& own, int column, int row, int reach, Sample<K>& result) const {
     constexpr float kernel[3] = {0.375F, 0.25F, 0.0625F};
-    const Cell<K>& own = cellAt(column, row);
     const float ownDirect_lx = world_.layout.strength(own.direct_lx);
     const float ownReflected_lx = world_.layout.strength(own.reflected_lx);
     Mean direct;
     Mean reflected;
+    const auto add = [&](const Sample<K>& other, float share) {
+      const float facing = glm::dot(own.normal, other.normal);
+      if (facing < 0.9F) return;
+      const float offPlane =
+          std::abs(glm::dot(other.point - own.point, own.normal)) / (0.004F * own.distance_m);
+      const float along = share * std::exp(-offPlane - 32.0F * (1.0F - facing));
+      const float directStep = std::abs(world_.layout.strength(other.direct_lx) - ownDirect_lx) /
+                               (3.0F * (own.directDeviation_lx + other.directDeviation_lx) + 1e-6F);
+      direct.add(along * std::exp(-directStep * directStep), other.direct_lx, other.directDeviation_lx);
+      const float reflectedStep =
+          std::abs(world_.layout.strength(other.reflected_lx) - ownReflected_lx) /
+          (6.0F * (own.reflectedDeviation_lx + other.reflectedDeviation_lx) + 0.1F * ownReflected_lx + 1e-6F);
+      reflected.add(along * std::exp(-reflectedStep * reflectedStep), other.reflected_lx,
+                    other.reflectedDeviation_lx);
+    };
     for (int dy = -2; dy <= 2; ++dy) {
       for (int dx = -2; dx <= 2; ++dx) {
         const int x = column + dx * reach;
         const int y = row + dy * reach;
         if (x < 0 || y < 0 || x >= columns_ || y >= rows_) continue;
-        const Cell<K>& other = cellAt(x, y);
-        const float facing = glm::dot(own.normal, other.normal);
-        if (!other.isSurface || facing < 0.9F) continue;
-        const float offPlane =
-            std::abs(glm::dot(other.point - own.point, own.normal)) / (0.004F * own.distance_m);
-        const float along =
-            kernel[std::abs(dx)] * kernel[std::abs(dy)] * std::exp(-offPlane - 32.0F * (1.0F - facing));
-        const float directStep = std::abs(world_.layout.strength(other.direct_lx) - ownDirect_lx) /
-                                 (3.0F * (own.directDeviation_lx + other.directDeviation_lx) + 1e-6F);
-        direct.add(along * std::exp(-directStep * directStep), other.direct_lx, other.directDeviation_lx);
-        const float reflectedStep = std::abs(world_.layout.strength(other.reflected_lx) - ownReflected_lx) /
-                                    (6.0F * (own.reflectedDeviation_lx + other.reflectedDeviation_lx) +
-                                     0.1F * ownReflected_lx + 1e-6F);
-        reflected.add(along * std::exp(-reflectedStep * reflectedStep), other.reflected_lx,
-                      other.reflectedDeviation_lx);
+        for (const Sample<K>& other : samplesIn(x, y))
+          add(other, kernel[std::abs(dx)] * kernel[std::abs(dy)]);
       }
     }
     result = own;
@@ -165,14 +244,24 @@ class Picture {
     glm::dvec3 sum(0.0);
     double lit_lx = 0.0;
     int surfaces = 0;
-    for (std::size_t i = 0; i < spotsOfPixel; ++i) {
-      const Seen seen = seenAt(x + spots[i].x, y + spots[i].y, mixKeys(0x71d, spotsOfPixel * pixel + i));
+    std::size_t looked = 0;
+    double darkest = std::numeric_limits<double>::infinity();
+    double brightest = 0.0;
+    const auto look = [&](const glm::vec2& spot) {
+      const Seen seen = seenAt(x + spot.x, y + spot.y, mixKeys(0x71d, spotsMost * pixel + looked++));
       sum += seen.luminance_cd_m2;
-      if (std::isnan(seen.illuminance_lx)) continue;
+      const double luminance = luminanceOf(seen.luminance_cd_m2);
+      darkest = std::min(darkest, luminance);
+      brightest = std::max(brightest, luminance);
+      if (std::isnan(seen.illuminance_lx)) return;
       lit_lx += seen.illuminance_lx;
       ++surfaces;
+    };
+    for (const glm::vec2& spot : spots) look(spot);
+    if (brightest > contrastLeast * darkest) {
+      for (std::size_t i = 0; i < furtherSide * furtherSide; ++i) look(furtherSpot(i));
     }
-    image.pixels_cd_m2[pixel] = glm::vec3(sum / static_cast<double>(spotsOfPixel));
+    image.pixels_cd_m2[pixel] = glm::vec3(sum / static_cast<double>(looked));
     if (surfaces > 0) image.illuminance_lx[pixel] = static_cast<float>(lit_lx / surfaces);
   }
 
@@ -229,77 +318,34 @@ class Picture {
     return isInside ? beam_lx : glm::vec3(0.0F);
   }
 
-  /// Whether a surface goes on for another cell `towards` where its cells lie from a point at its edge, and
-  /// light hardly changes on the way: then it is the same at the edge.
-  [[nodiscard]] bool isEvenBeyond(int column, int row, const glm::vec3& point, const glm::vec3& normal,
-                                  const glm::vec3& towards, float distance_m) const {
-    constexpr float changeMost = 0.15F;
-    const glm::vec3 view = (point - eye_) / distance_m;
-    const float seenAcross = glm::length(towards - glm::dot(towards, view) * view);
-    const float spacing_m = distance_m * cell * camera_.pixelAngle() / std::max(seenAcross, 0.02F);
-    const Cell<K>* near = nullptr;
-    const Cell<K>* far = nullptr;
-    float nearest_m = std::numeric_limits<float>::infinity();
-    float farthest_m = -nearest_m;
-    for (int y = std::max(row - 2, 0); y <= std::min(row + 2, rows_ - 1); ++y) {
-      for (int x = std::max(column - 2, 0); x <= std::min(column + 2, columns_ - 1); ++x) {
-        const Cell<K>& other = cellAt(x, y);
-        const bool isSame = other.isSurface && glm::dot(other.normal, normal) > 0.98F &&
-                            std::abs(glm::dot(other.point - point, normal)) < 0.002F * distance_m;
-        if (!isSame) continue;
-        const float along_m = glm::dot(other.point - point, towards);
-        if (along_m < nearest_m) {
-          nearest_m = along_m;
-          near = &other;
-        }
-        if (along_m > farthest_m) {
-          farthest_m = along_m;
-          far = &other;
-        }
-      }
-    }
-    if (near == nullptr || farthest_m - nearest_m < 0.7F * spacing_m) return false;
-    const float here_lx = world_.layout.strength(near->direct_lx + near->reflected_lx);
-    const float there_lx = world_.layout.strength(far->direct_lx + far->reflected_lx);
-    return std::abs(there_lx - here_lx) < changeMost * here_lx;
-  }
-
-  /// Irradiance between the cells near a picture point that lie on the same surface, if they lie about it. A
-  /// surface that is seen aslant and narrow, as a window's head, often has all of them before the point or
-  /// all behind it, where light may be another. Cells lie further apart on a surface seen `aslant`, the
-  /// cosine.
+  /// Irradiance between the samples near a place of the picture that lie on the same surface. They lie
+  /// further apart on a surface seen `aslant`, the cosine.
   [[nodiscard]] std::optional<Columns<K>> irradianceAt(float x, float y, const glm::vec3& point,
                                                        const glm::vec3& normal, float distance_m,
                                                        float aslant) const {
-    const float cell_m = distance_m * cell * camera_.pixelAngle();  // where it is seen squarely
-    const float step_m = cell_m / std::max(aslant, 0.02F);
+    const float tile_m = distance_m * tile * camera_.pixelAngle();  // where it is seen squarely
+    const float step_m = tile_m / std::max(aslant, 0.02F);
     const float farthest_m = std::max(0.05F * distance_m, std::min(2.0F * step_m, 0.3F * distance_m));
-    const int column = static_cast<int>(x) / cell;
-    const int row = static_cast<int>(y) / cell;
+    const int column = static_cast<int>(x) / tile;
+    const int row = static_cast<int>(y) / tile;
     Columns<K> sum;
-    glm::vec3 offset(0.0F);
     float weights = 0.0F;
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        if (column + dx < 0 || row + dy < 0 || column + dx >= columns_ || row + dy >= rows_) continue;
-        const Cell<K>& other = cellAt(column + dx, row + dy);
-        if (!other.isSurface || glm::dot(other.normal, normal) < 0.7F) continue;
-        const float offPlane = std::abs(glm::dot(other.point - point, normal)) / (0.01F * distance_m);
-        if (glm::length(other.point - point) > farthest_m) continue;
-        const float tent =
-            std::max(1.5F - std::abs(x / cell - static_cast<float>(column + dx) - 0.5F), 0.01F) *
-            std::max(1.5F - std::abs(y / cell - static_cast<float>(row + dy) - 0.5F), 0.01F);
-        const float weight = tent * std::exp(-4.0F * (offPlane + 1.0F - glm::dot(other.normal, normal)));
-        sum += weight * (other.direct_lx + other.reflected_lx);
-        offset += weight * (other.point - point);
-        weights += weight;
+    for (int ny = std::max(row - 1, 0); ny <= std::min(row + 1, rows_ - 1); ++ny) {
+      for (int nx = std::max(column - 1, 0); nx <= std::min(column + 1, columns_ - 1); ++nx) {
+        for (const Sample<K>& other : samplesIn(nx, ny)) {
+          const float facing = glm::dot(other.normal, normal);
+          if (facing < 0.7F || glm::distance(other.point, point) > farthest_m) continue;
+          const float offPlane = std::abs(glm::dot(other.point - point, normal)) / (0.01F * distance_m);
+          // Nothing at a tile's distance, so that no edges of tiles show.
+          const float tent = std::max(1.0F - std::abs(x - other.pixel.x) / other.reach_px, 0.01F) *
+                             std::max(1.0F - std::abs(y - other.pixel.y) / other.reach_px, 0.01F);
+          const float weight = tent * std::exp(-4.0F * (offPlane + 1.0F - facing));
+          sum += weight * (other.direct_lx + other.reflected_lx);
+          weights += weight;
+        }
       }
     }
     if (weights < 1e-4F) return std::nullopt;
-    if (glm::length(offset) > weights * std::max(cell_m, 0.25F * step_m) &&
-        !isEvenBeyond(column, row, point, normal, glm::normalize(offset), distance_m)) {
-      return std::nullopt;
-    }
     return (1.0F / weights) * sum;
   }
 
@@ -307,9 +353,10 @@ class Picture {
   const World& world_;
   Camera camera_;
   glm::vec3 eye_;
-  GatherSettings settings_, spotSettings_;  // of a cell, of a spot of a pixel
+  GatherSettings settings_, spotSettings_;  // of a sample, of a spot of a pixel
   int columns_, rows_;
-  std::vector<Cell<K>> cells_;
+  std::vector<Sample<K>> samples_;  // by tiles
+  std::vector<std::size_t> first_;  // of a tile, and one past the last
   std::int32_t domain_ = -1;
 };
 
