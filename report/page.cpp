@@ -84,7 +84,7 @@ std::string headerHtml(const Page& page) {
   for (const Room& room : building.rooms) floor_m2 += room.floorArea_m2;
   const std::size_t rooms = building.rooms.size();
   std::string html = "<header>\n<p class=\"over\">Daylight study</p>\n<h1>" +
-                     escapeHtml(model.substr(0, model.find_last_of('.'))) + "</h1>\n<p class=\"lead\">" +
+                     nameHtml(model.substr(0, model.find_last_of('.'))) + "</h1>\n<p class=\"lead\">" +
                      (rooms == 1 ? "One room" : std::to_string(rooms) + " rooms") + " with " +
                      fixedNumber(floor_m2, 1) + " m² of floor, under a " + skyText(page.input.study) +
                      ".</p>\n";
@@ -190,13 +190,17 @@ std::string overviewSection(const Page& page) {
   const ReportInput& input = page.input;
   std::vector<std::vector<std::string>> rows;
   const bool withFactor = hasDaylightFactor(input.study.sky);
+  bool withNames = false;  // where a room's name alone does not tell which grid
+  for (std::size_t r = 0; r < input.building.rooms.size(); ++r)
+    withNames = withNames || gridsOfRoom(input.building, static_cast<std::int32_t>(r)).size() > 1;
+  withNames = withNames || !gridsOfRoom(input.building, -1).empty();
   for (std::size_t g = 0; g < input.building.grids.size(); ++g) {
     const SensorGrid& grid = input.building.grids[g];
     const GridMetrics m = metricsOf(input.solution.grids.at(g), input.study.sky);
-    std::vector<std::string> row = {
-        nameHtml(roomName(input.building, grid.room)), nameHtml(grid.name),
-        illuminanceText(m.illuminance_lx.mean),        illuminanceText(m.illuminance_lx.median),
-        illuminanceText(m.illuminance_lx.min),         fixedNumber(m.uniformity, 2)};
+    std::vector<std::string> row = {nameHtml(roomName(input.building, grid.room))};
+    if (withNames) row.push_back(nameHtml(grid.name));
+    row.insert(row.end(), {illuminanceText(m.illuminance_lx.mean), illuminanceText(m.illuminance_lx.median),
+                           illuminanceText(m.illuminance_lx.min), fixedNumber(m.uniformity, 2)});
     if (withFactor) {
       row.push_back(factorText(m.daylightFactor_pct->mean));
       row.push_back(factorText(m.daylightFactor_pct->median));
@@ -207,10 +211,13 @@ std::string overviewSection(const Page& page) {
     rows.push_back(row);
   }
   if (rows.size() < 2) return {};  // one grid's figures follow at once
-  std::vector<Column> columns = {{"Room", "", false}, {"Grid", "", false}, {"Mean", "lx"},
-                                 {"Median", "lx"},    {"Minimum", "lx"},   {"Uniformity", ""}};
+  std::vector<Column> columns = {{"Room", "", false}};
+  if (withNames) columns.push_back({"Grid", "", false});
+  columns.insert(columns.end(), {{"Mean", "lx"}, {"Median", "lx"}, {"Minimum", "lx"}, {"Uniformity", ""}});
   if (withFactor) {
-    columns.insert(columns.end(), {{"Mean DF", "%"}, {"Median DF", "%"}, {"DF ≥ 2 %", "% of area"}});
+    columns.insert(
+        columns.end(),
+        {{"Mean DF", "%"}, {"Median DF", "%"}, {"DF\u00a0≥\u00a02\u00a0%", "%\u00a0of\u00a0area"}});
   }
   columns.push_back({"Error", "%"});
   if (withFactor) columns.push_back({"EN 17037", "", false});

@@ -117,7 +117,9 @@ svg .off{display:none}
 .plan .isolux path.under{stroke:#1d1c1a;stroke-width:2.6;stroke-opacity:.55}
 .exposure{display:block;font-size:.88rem}
 .glance table{font-size:.86rem}
-.glance tbody td:not(.n),.glance tbody th:not(.n){min-width:0}
+.glance tbody td:not(.n){min-width:0}
+.glance tbody th:not(.n){min-width:4.6em}
+.glance .yes{white-space:normal}
 .glance .n{padding-left:8px}
 .glance .n+td:not(.n),.glance .n+th:not(.n){padding-left:12px;padding-right:0}
 .exposed img{filter:url(#exposure)}
@@ -149,9 +151,10 @@ thead{display:table-header-group;break-inside:avoid}tr.chosen th,tr.chosen td{ba
 .filter,.fold,.switches,.readout,.exposure,.theme,.screen{display:none!important}
 .first{grid-template-columns:1fr;gap:4mm}.views{margin-top:5mm}.views img{max-height:78mm;width:auto;max-width:100%}
 .rest{display:block;margin-top:5mm}.rest figure{margin:5mm 0 0}.falsecolours summary{display:none}.falsecolours .rest{display:grid;grid-template-columns:1fr 1fr;gap:5mm}
-figure{margin:5mm 0}figcaption{margin-top:2mm;font-size:8.6pt}.chart{max-width:150mm}tr.more{display:none}th[aria-sort] .sort::after{content:""}
-table{font-size:8.6pt}dl.figures{grid-template-columns:repeat(4,1fr);gap:3mm 6mm;margin:4mm 0}dl.figures dd{font-size:15pt}
-svg.plan{max-height:92mm}h3{margin:5mm 0 2mm}a{text-decoration:none}}
+figure{margin:5mm 0}figcaption{margin-top:2mm;font-size:8.6pt}.chart{max-width:128mm}tr.more{display:none}th[aria-sort] .sort::after{content:""}
+table{font-size:8.6pt}th,td{padding:1.6mm 2mm 1.6mm 0}.n{padding-left:2mm;padding-right:0}
+.n+th:not(.n),.n+td:not(.n){padding-left:4mm}tbody th:not(.n),tbody td:not(.n){min-width:4.6em}tbody th:not(.n){min-width:5.8em}dl.figures{grid-template-columns:repeat(4,1fr);gap:3mm 6mm;margin:3mm 0}dl.figures dt{font-size:7.8pt}dl.figures dd{font-size:15pt}
+svg.plan{max-height:80mm}h3{margin:5mm 0 2mm}a{text-decoration:none}}
 )css";
 
 }  // namespace clerestory

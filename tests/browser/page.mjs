@@ -1,35 +1,47 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opens a report's page in Chromium and uses it as its reader would: sorts and filters a table, moves over a plan,
-// asks a surface in 3D, changes the exposure, turns to dark, prints. Run as
-//   node page.mjs REPORT [FOLDER]       with CHROMIUM naming the browser where it is not /usr/bin/chromium
-// FOLDER, where given, receives screenshots at desktop, tablet and paper size, and the PDF.
+// Opens reports' pages in Chromium, one process for all, and uses each as its reader would: sorts a table, moves over
+// a plan, changes the exposure, asks a surface in 3D, prints. The first page's further controls are used too:
+// filter, section, walk, dark page, A3. Run as
+//   node page.mjs REPORT... [--pictures FOLDER]      with CHROMIUM naming the browser where it is not /usr/bin/chromium
+// FOLDER receives screenshots of each page at desktop, tablet and phone size, and the PDF.
 import assert from "node:assert/strict";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
-import { readFile } from "node:fs/promises";
+import { mkdir, readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 
 // From where ctest has put the packages of package-lock.json; else from beside this file.
 const require = createRequire(process.env.CLERESTORY_NODE ? `${process.env.CLERESTORY_NODE}/package.json` : import.meta.url);
 const { chromium } = require("playwright-core");
 
-const [report, pictures] = process.argv.slice(2);
-const address = pathToFileURL(path.resolve(report, "index.html")).href;
-const html = await readFile(path.join(report, "index.html"), "utf8");
+const reports = process.argv.slice(2);
+const option = reports.indexOf("--pictures");
+const folder = option >= 0 ? reports.splice(option, 2)[1] : undefined;
 
 const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
   args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"],
 });
 let passed = 0;
-const step = async (name, work) => {
-  await work();
-  ++passed;
-  console.log(`passed: ${name}`);
-};
 
-try {
-  const page = await browser.newPage({ viewport: { width: 1440, height: 900 } });
+const use = async (report, isFirst) => {
+  const name = path.basename(report);
+  const step = async (text, work) => {
+    try {
+      await work();
+    } catch (error) {
+      console.error(`FAILED: ${name}: ${text}`);
+      throw error;
+    }
+    ++passed;
+    console.log(`passed: ${name}: ${text}`);
+  };
+  const address = pathToFileURL(path.resolve(report, "index.html")).href;
+  const html = await readFile(path.join(report, "index.html"), "utf8");
+  const pictures = folder && path.join(folder, name);
+  if (pictures) await mkdir(pictures, { recursive: true });
+
+  const page = await browser.newPage({ viewport: { width: 1100, height: 800 } });
   const complaints = [];
   const requests = [];
   page.on("console", (message) => {
@@ -44,6 +56,64 @@ try {
     await dialog.dismiss();
   });
   page.on("request", (request) => requests.push(request.url()));
+  /** What the page has besides. */
+  const useFurther = async () => {
+    await step("a long table filters", async () => {
+      const fields = page.locator(".filter input");
+      if ((await fields.count()) === 0) return;
+      await fields.first().fill("no such thing anywhere");
+      const table = page.locator(".filter + .table table").first();
+      assert.equal(await table.locator("tbody tr:not([hidden])").count(), 0);
+      await fields.first().fill("");
+      assert.ok((await table.locator("tbody tr:not([hidden])").count()) > 10);
+    });
+
+    await step("the building in 3D cuts, colours and is walked through", async () => {
+      if (!html.includes('id="mesh-data"')) return;
+      const canvas = page.locator("#viewer canvas");
+      await canvas.scrollIntoViewIfNeeded();
+      const asLit = await canvas.screenshot();
+      await page.locator('[data-viewer="colours"]').selectOption("illuminance");
+      await page.waitForTimeout(300);
+      assert.notDeepEqual(await canvas.screenshot(), asLit);
+      assert.ok(await page.locator(".legend3d").isVisible());
+      const whole = await canvas.screenshot();
+      await page.locator('[data-viewer="section"]').fill("60");
+      await page.waitForTimeout(300);
+      assert.notDeepEqual(await canvas.screenshot(), whole);
+      if (pictures) await canvas.screenshot({ path: path.join(pictures, "section.png") });
+      await page.locator('[data-viewer="section"]').fill("200");
+      await page.locator('[data-viewer="motion"]').selectOption("walk");
+      await page.waitForTimeout(300);
+      const standing = await canvas.screenshot();
+      await canvas.press("ArrowUp", { delay: 400 });
+      await page.waitForTimeout(300);
+      assert.notDeepEqual(await canvas.screenshot(), standing);
+      if (pictures) await canvas.screenshot({ path: path.join(pictures, "walk.png") });
+      await page.locator('[data-viewer="motion"]').selectOption("orbit");
+      await page.locator('[data-viewer="colours"]').selectOption("display");
+    });
+
+    await step("text stands out from its ground, light and dark (WCAG AA)", async () => {
+      for (const theme of ["light", "dark"]) {
+        await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
+        const least = await page.evaluate(() => {
+          const style = getComputedStyle(document.documentElement);
+          const luminance = (name) => {
+            const hex = style.getPropertyValue(name).trim().replace(/^#(.)(.)(.)$/, "#$1$1$2$2$3$3");
+            const [r, g, b] = [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255)
+              .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+            return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+          };
+          const contrast = (a, b) => (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+          return Math.min(...["--paper", "--tint"].flatMap((ground) =>
+            ["--ink", "--soft", "--accent", "--yes", "--no"].map((ink) => contrast(luminance(ink), luminance(ground)))));
+        });
+        assert.ok(least >= 4.5, `${theme}: ${least}`);
+      }
+    });
+  };
+
   await page.goto(address);
 
   await step("it says what it is", async () => {
@@ -65,16 +135,6 @@ try {
       for (let i = 1; i < sorted.length; ++i) assert.ok(order * (sorted[i] - sorted[i - 1]) >= 0, `row ${i}`);
     }
     assert.equal(await table.locator("thead th").nth(column).getAttribute("aria-sort"), "ascending");
-  });
-
-  await step("a long table filters", async () => {
-    const fields = page.locator(".filter input");
-    if ((await fields.count()) === 0) return;
-    await fields.first().fill("no such thing anywhere");
-    const table = page.locator(".filter + .table table").first();
-    assert.equal(await table.locator("tbody tr:not([hidden])").count(), 0);
-    await fields.first().fill("");
-    assert.ok((await table.locator("tbody tr:not([hidden])").count()) > 10);
   });
 
   await step("a plan tells the sensor under the pointer and by arrow keys", async () => {
@@ -103,7 +163,6 @@ try {
 
   await step("a picture's exposure changes what is seen", async () => {
     const slider = page.locator(".exposure input");
-    if ((await slider.count()) === 0) return;
     const picture = page.locator(".views img").first();
     await picture.scrollIntoViewIfNeeded();
     const before = await picture.screenshot();
@@ -114,7 +173,7 @@ try {
     await slider.fill("0");
   });
 
-  await step("the building in 3D tells a surface, cuts, colours and is walked through", async () => {
+  await step("the building in 3D tells a surface that is clicked", async () => {
     if (!html.includes('id="mesh-data"')) {
       assert.match(await page.locator("section", { has: page.locator("#model") }).textContent(), /without its 3D viewer|too many|nothing lit/);
       console.log("  (the page has no viewer and says so)");
@@ -123,9 +182,8 @@ try {
     await page.locator("#viewer[data-ready]").waitFor({ timeout: 60_000 });
     const canvas = page.locator("#viewer canvas");
     await canvas.scrollIntoViewIfNeeded();
-    const colours = async () => new Set((await canvas.screenshot()).toString("base64").match(/.{64}/g)).size;
-    const asLit = await canvas.screenshot();
-    assert.ok((await colours()) > 20, "the picture is empty");
+    const drawn = new Set((await canvas.screenshot()).toString("base64").match(/.{64}/g)).size;
+    assert.ok(drawn > 20, "the picture is empty");
     const box = await canvas.boundingBox();
     let told = "";
     for (const [x, y] of [[0.5, 0.5], [0.45, 0.6], [0.55, 0.45], [0.5, 0.7], [0.4, 0.5], [0.6, 0.6]]) {
@@ -136,26 +194,9 @@ try {
     assert.match(told, /Here.* lx.*Surface.*Material/s);
     const name = await page.locator("tr.chosen th").first().textContent();
     assert.ok(told.includes(name));
-    await page.locator('[data-viewer="colours"]').selectOption("illuminance");
-    await page.waitForTimeout(300);
-    assert.notDeepEqual(await canvas.screenshot(), asLit);
-    assert.ok(await page.locator(".legend3d").isVisible());
-    const whole = await canvas.screenshot();
-    await page.locator('[data-viewer="section"]').fill("60");
-    await page.waitForTimeout(300);
-    assert.notDeepEqual(await canvas.screenshot(), whole);
-    if (pictures) await canvas.screenshot({ path: path.join(pictures, "section.png") });
-    await page.locator('[data-viewer="section"]').fill("200");
-    await page.locator('[data-viewer="motion"]').selectOption("walk");
-    await page.waitForTimeout(300);
-    const standing = await canvas.screenshot();
-    await canvas.press("ArrowUp", { delay: 400 });
-    await page.waitForTimeout(300);
-    assert.notDeepEqual(await canvas.screenshot(), standing);
-    if (pictures) await canvas.screenshot({ path: path.join(pictures, "walk.png") });
-    await page.locator('[data-viewer="motion"]').selectOption("orbit");
-    await page.locator('[data-viewer="colours"]').selectOption("display");
   });
+
+  if (isFirst) await useFurther();
 
   await step("every control has a name", async () => {
     const nameless = await page.locator("button, input, select, img, svg[role=img], canvas").evaluateAll((all) =>
@@ -163,27 +204,8 @@ try {
     assert.equal(nameless, 0);
   });
 
-  await step("text stands out from its ground, light and dark (WCAG AA)", async () => {
-    for (const theme of ["light", "dark"]) {
-      await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
-      const least = await page.evaluate(() => {
-        const style = getComputedStyle(document.documentElement);
-        const luminance = (name) => {
-          const hex = style.getPropertyValue(name).trim().replace(/^#(.)(.)(.)$/, "#$1$1$2$2$3$3");
-          const [r, g, b] = [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255)
-            .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
-          return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-        };
-        const contrast = (a, b) => (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
-        return Math.min(...["--paper", "--tint"].flatMap((ground) =>
-          ["--ink", "--soft", "--accent", "--yes", "--no"].map((ink) => contrast(luminance(ink), luminance(ground)))));
-      });
-      assert.ok(least >= 4.5, `${theme}: ${least}`);
-    }
-  });
-
-  await step("it prints to PDF, A4 and A3", async () => {
-    for (const format of ["A4", "A3"]) {
+  await step("it prints to PDF", async () => {
+    for (const format of isFirst ? ["A4", "A3"] : ["A4"]) {
       const pdf = await page.pdf({
         format,
         printBackground: true,
@@ -195,14 +217,25 @@ try {
     }
   });
 
+  await step("no table is wider than the paper", async () => {
+    const before = page.viewportSize();
+    await page.emulateMedia({ media: "print" });
+    await page.setViewportSize({ width: 672, height: 900 }); // A4 between its margins
+    const wide = await page.locator(".table").evaluateAll((all) =>
+      all.filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.getAttribute("aria-label")));
+    await page.emulateMedia({ media: null });
+    await page.setViewportSize(before);
+    assert.deepEqual(wide, []);
+  });
+
   if (pictures) {
-    for (const [name, theme, width] of [["desktop", "light", 1440], ["tablet", "light", 820], ["dark", "dark", 1440], ["phone", "light", 390]]) {
+    for (const [shot, theme, width] of [["desktop", "light", 1440], ["tablet", "light", 820], ["dark", "dark", 1440], ["phone", "light", 390]]) {
       await page.evaluate((value) => (document.documentElement.dataset.theme = value), theme);
       await page.setViewportSize({ width, height: 1100 });
       await page.evaluate(() => window.scrollTo(0, 0));
       await page.waitForTimeout(400);
-      await page.screenshot({ path: path.join(pictures, `${name}.png`), fullPage: true });
-      await page.screenshot({ path: path.join(pictures, `${name}-first.png`) });
+      await page.screenshot({ path: path.join(pictures, `${shot}.png`), fullPage: true });
+      await page.screenshot({ path: path.join(pictures, `${shot}-first.png`) });
     }
   }
 
@@ -211,6 +244,11 @@ try {
     assert.deepEqual(requests.filter((url) => url !== address && !url.startsWith("data:") && !url.startsWith("blob:")), []);
     assert.equal(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), true);
   });
+  await page.close();
+};
+
+try {
+  for (const [i, report] of reports.entries()) await use(report, i === 0);
 } finally {
   await browser.close();
 }
