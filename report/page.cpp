@@ -378,7 +378,7 @@ std::string unjudgedNorms(const Study& study) {
 
 std::string assumptionsSection(const Page& page) {
   const Study& study = page.input.study;
-  std::string html = sectionOpening("assumptions", "Assumptions and diagnoses", "break");
+  std::string html = sectionOpening("assumptions", "Assumptions and diagnoses");
   html += "<ul class=\"list\">\n";
   for (const std::string& text : study.assumptions) {
     html += "<li>" + escapeHtml(withoutFolders(study, text)) + "</li>\n";

@@ -183,7 +183,7 @@ std::string energyTable(const ReportInput& input) {
 }  // namespace
 
 std::string accuracySection(const ReportInput& input) {
-  std::string html = sectionOpening("accuracy", "Accuracy", "break");
+  std::string html = sectionOpening("accuracy", "Accuracy");
   html +=
       "<p>Asked for was an accuracy of <b>" + shortNumber(100.0 * input.study.accuracy) +
       " %</b>: at 95 of 100 sensors the numerical error is at most this share of the value, where values "

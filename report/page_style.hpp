@@ -118,7 +118,7 @@ svg .off{display:none}
 .exposure{display:block;font-size:.88rem}
 .glance table{font-size:.86rem}
 .glance tbody td:not(.n){min-width:0}
-.glance tbody th:not(.n){min-width:4.6em}
+.glance tbody th:not(.n){min-width:5.2em;padding-right:4px}
 .glance .yes{white-space:normal}
 .glance .n{padding-left:8px}
 .glance .n+td:not(.n),.glance .n+th:not(.n){padding-left:12px;padding-right:0}
@@ -145,13 +145,13 @@ h1{font-size:2rem}section{margin:56px 0}}
 *{-webkit-print-color-adjust:exact;print-color-adjust:exact}
 body{font-size:10pt}main,header,footer{max-width:none;padding:0}header{padding-top:0}nav{display:none}
 section{margin:12mm 0 0;padding-top:6mm}
-.room,.break{break-before:page;margin-top:0;padding-top:0;border-top:0}
+.room{break-before:page;margin-top:0;padding-top:0;border-top:0}
 h2,h3,caption{break-after:avoid}figure,dl.figures,tr,li,pre{break-inside:avoid}
 thead{display:table-header-group;break-inside:avoid}tr.chosen th,tr.chosen td{background:none}.plan .sensors rect.chosen{stroke:none}.table{overflow:visible;margin:5mm 0}.short{break-inside:avoid}
 .filter,.fold,.switches,.readout,.exposure,.theme,.screen{display:none!important}
 .first{grid-template-columns:1fr;gap:4mm}.views{margin-top:5mm}.views img{max-height:78mm;width:auto;max-width:100%}
 .rest{display:block;margin-top:5mm}.rest figure{margin:5mm 0 0}.falsecolours summary{display:none}.falsecolours .rest{display:grid;grid-template-columns:1fr 1fr;gap:5mm}
-figure{margin:5mm 0}figcaption{margin-top:2mm;font-size:8.6pt}.chart{max-width:128mm}tr.more{display:none}th[aria-sort] .sort::after{content:""}
+figure{margin:5mm 0}figcaption{margin-top:2mm;font-size:8.6pt}.chart{max-width:128mm}tr.more{display:none}th[aria-sort] .sort::after{content:""}button.sort{display:contents!important}
 table{font-size:8.6pt}th,td{padding:1.6mm 2mm 1.6mm 0}.n{padding-left:2mm;padding-right:0}
 .n+th:not(.n),.n+td:not(.n){padding-left:4mm}tbody th:not(.n),tbody td:not(.n){min-width:4.6em}tbody th:not(.n){min-width:5.8em}dl.figures{grid-template-columns:repeat(4,1fr);gap:3mm 6mm;margin:3mm 0}dl.figures dt{font-size:7.8pt}dl.figures dd{font-size:15pt}
 svg.plan{max-height:80mm}h3{margin:5mm 0 2mm}a{text-decoration:none}}

@@ -72,6 +72,26 @@ TEST(View, NarrowSurfaceSeenAslantHasNoDashes) {
   EXPECT_LT(std::sqrt(squares / onBoard), 0.1);
 }
 
+// In a closed room that glows and reflects alike everywhere, luminance is exitance / (1 - reflectance) / pi
+// in every direction: edges and corners, where tiles hold several surfaces, must not show.
+TEST(View, FurnaceIsOfOneLuminance) {
+  Drawing drawing;
+  const std::uint32_t glowing = addMaterial(
+      drawing, {.name = "glowing", .reflectance = glm::dvec3(0.6), .exitance_lm_m2 = glm::dvec3(400.0)});
+  addBox(drawing, {0, 0, 0}, {4, 6, 3}, glowing);
+  addBox(drawing, {1.0, 2.0, 0.0}, {2.0, 3.0, 1.0}, glowing, 0, {0});
+  Study study;
+  ViewSettings view;
+  view.eye_m = {3.5, 5.5, 1.6};
+  view.target_m = {1.0, 0.0, 1.0};
+  view.size_px = {160, 90};
+  study.views = {view};
+  const Solution solution = solve(buildingOf(drawing.scene), study, {});
+  const double expected_cd_m2 = 400.0 / (1.0 - 0.6) * std::numbers::inv_pi;
+  for (const glm::vec3& pixel : solution.views.at(0).pixels_cd_m2)
+    ASSERT_NEAR(pixel.g, expected_cd_m2, 0.005 * expected_cd_m2);
+}
+
 // Luminance times cosine, added up over what a fisheye that looks up sees, is the illuminance of a sensor at
 // its eye; so it is over the upper half of a panorama.
 TEST(View, FisheyeAndPanoramaHoldTheLightThatASensorGets) {
