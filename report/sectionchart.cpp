@@ -106,7 +106,7 @@ std::string frameSvg(const Frame& frame, bool alongY) {
     svg += text(frame.x(at), frame.bottom + 20, "tick", fixedNumber(at, step_m < 1.0 ? 1 : 0));
   }
   return svg + text(frame.right, frame.bottom + 38, "right", std::string(alongY ? "y" : "x") + " in m") +
-         text(frame.left - 10, frame.bottom + 20, "right", "lx");
+         text(frame.left - 10, frame.bottom + 38, "right", "lx");
 }
 
 }  // namespace
