@@ -29,8 +29,10 @@ constexpr std::array<glm::vec2, 4> spots = {
 constexpr std::size_t furtherSide = 4;  // 16 further spots where the first differ
 constexpr float contrastLeast = 1.1F;   // between the first, to look further
 constexpr std::size_t spotsMost = spots.size() + furtherSide * furtherSide;
-constexpr float aslantMost = 0.3F;  // cosine under which a surface's edge is looked at pixel by pixel
-constexpr int smoothingSteps = 5;   // each doubles the reach: 62 tiles after five
+constexpr float aslantMost = 0.3F;     // cosine under which a surface's edge is looked at pixel by pixel
+constexpr float noiseMost = 0.05F;     // of direct light, in what a surface gets, before it is gathered again
+constexpr float furtherDirect = 8.0F;  // times as many samples then
+constexpr int smoothingSteps = 5;      // each doubles the reach: 62 tiles after five
 
 /// Spots in a lattice that is sheared, so that no two share a row or a column.
 glm::vec2 furtherSpot(std::size_t i) {
@@ -75,6 +77,8 @@ class Picture {
     domain_ = domainAt(world_, eye_);
     findSamples();
     forEachIndex(samples_.size(), 64, [&](std::size_t i) { gatherSample(i); });
+    evenDeviations();
+    gatherNoisyAgain();
     smooth();
     LuminanceImage image{camera_.width(), camera_.height(), {}, {}};
     image.pixels_cd_m2.resize(static_cast<std::size_t>(camera_.width()) *
@@ -172,6 +176,51 @@ class Picture {
     own.reflected_lx = arriving.reflected_lx;
     own.directDeviation_lx = arriving.directDeviation_lx;
     own.reflectedDeviation_lx = arriving.reflectedDeviation_lx;
+  }
+
+  /// What a sample's own rays tell of its noise is noise itself, and nothing where they happen to agree: the
+  /// mean variance of the samples around it on its surface is taken instead.
+  void evenDeviations() {
+    std::vector<Sample<K>> even = samples_;
+    forEachIndex(first_.size() - 1, 256, [&](std::size_t i) {
+      const int column = static_cast<int>(i % static_cast<std::size_t>(columns_));
+      const int row = static_cast<int>(i / static_cast<std::size_t>(columns_));
+      for (std::size_t s = first_[i]; s < first_[i + 1]; ++s) {
+        float direct = 0.0F;
+        float reflected = 0.0F;
+        float count = 0.0F;
+        for (int y = std::max(row - 1, 0); y <= std::min(row + 1, rows_ - 1); ++y) {
+          for (int x = std::max(column - 1, 0); x <= std::min(column + 1, columns_ - 1); ++x) {
+            for (const Sample<K>& other : samplesIn(x, y)) {
+              if (!isOneSurface(samples_[s], other)) continue;
+              direct += other.directDeviation_lx * other.directDeviation_lx;
+              reflected += other.reflectedDeviation_lx * other.reflectedDeviation_lx;
+              count += 1.0F;
+            }
+          }
+        }
+        even[s].directDeviation_lx = std::sqrt(direct / count);
+        even[s].reflectedDeviation_lx = std::sqrt(reflected / count);
+      }
+    });
+    std::swap(samples_, even);
+  }
+
+  /// Gathers direct light again with more samples where its noise would show.
+  void gatherNoisyAgain() {
+    GatherSettings more = settings_;
+    more.direct.perFormFactor *= furtherDirect;
+    more.direct.least *= furtherDirect;
+    more.rays = 1;
+    forEachIndex(samples_.size(), 64, [&](std::size_t i) {
+      Sample<K>& own = samples_[i];
+      const float whole_lx = world_.layout.strength(own.direct_lx + own.reflected_lx);
+      if (own.directDeviation_lx < noiseMost * whole_lx) return;
+      const Gathered<K> again = gather(light_, own.domain, own.point + rayOffset_m * own.normal, own.normal,
+                                       more, mixKeys(0x71e, i));
+      own.direct_lx = (1.0F / (1.0F + furtherDirect)) * (own.direct_lx + furtherDirect * again.direct_lx);
+      own.directDeviation_lx /= std::sqrt(1.0F + furtherDirect);
+    });
   }
 
   /// An à-trous filter along surfaces. Direct light keeps its edges, the shadows, where it changes by more
