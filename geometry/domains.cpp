@@ -5,6 +5,7 @@
 #include "domains.hpp"
 
 #include <algorithm>
+#include <bitset>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -26,7 +27,8 @@ constexpr double airMin_m2 = 0.5;        // surface of the smallest air that is 
 constexpr double worthCutting_m2 = 3.0;  // surface of an air for which a side is cut at its border
 constexpr std::uint32_t raysOfPoint = 6;
 constexpr std::uint32_t pointsOfSide = 3;  // at least; one where a side is smaller than an opening
-constexpr double pointsOfModel = 4000.0;   // further ones, shared out by area
+constexpr double pointsOfModel = 4000.0;   // further ones at most, shared out by area
+constexpr double pointsOfSquareMetre = 4.0;
 constexpr std::uint32_t pointsOfSideMax = 256;
 constexpr std::uint32_t closerRays = 32;  // of a closer look
 constexpr std::uint32_t closerRaysOfSmall = 8;
@@ -135,7 +137,7 @@ class AirSurvey {
   [[nodiscard]] std::uint32_t closerAirOf(std::uint32_t side, std::uint32_t own,
                                           const std::vector<bool>& lit) const {
     const bool isLit = own != nowhere && lit[own];
-    if (isLit && (isSmall(side) || !isInDoubt(side))) return own;
+    if (isLit && (isSmall(side) || !isInDoubt(side, own))) return own;
     const std::uint32_t rays = isSmall(side) ? closerRaysOfSmall : closerRays;
     const auto polygon = localPolygon(side / 2);
     const glm::vec3& normal = places_[firstPlace_[side]].normal;
@@ -184,15 +186,22 @@ class AirSurvey {
     return firstPlace_[side + 1] - firstPlace_[side] == 1;
   }
 
-  /// Whether a side's places are too few to be sure of, or disagree about their air: a closer look decides.
-  [[nodiscard]] bool isInDoubt(std::uint32_t side) const {
-    const std::uint32_t count = firstPlace_[side + 1] - firstPlace_[side];
-    if (count <= pointsOfSide + 1) return true;
-    std::uint32_t first = nowhere;
+  /// Whether a side's places disagree about their air or, where they are few, their rays met another one: a
+  /// closer look decides.
+  [[nodiscard]] bool isInDoubt(std::uint32_t side, std::uint32_t own) const {
+    const bool areFew = firstPlace_[side + 1] - firstPlace_[side] <= pointsOfSide + 1;
     for (std::uint32_t place = firstPlace_[side]; place < firstPlace_[side + 1]; ++place) {
-      if (air_[place] == nowhere) continue;
-      if (first != nowhere && first != air_[place]) return true;
-      first = air_[place];
+      if (air_[place] != nowhere && air_[place] != own) return true;
+      if (areFew && seesOther(place, own)) return true;
+    }
+    return false;
+  }
+
+  /// Whether a place's rays met another air, or none that is known.
+  [[nodiscard]] bool seesOther(std::uint32_t place, std::uint32_t own) const {
+    for (std::uint32_t ray = 0; ray < raysOfPoint; ++ray) {
+      const std::uint32_t met = met_[std::size_t{place} * raysOfPoint + ray].place;
+      if (met == nowhere || air_[met] != own) return true;
     }
     return false;
   }
@@ -235,7 +244,8 @@ class AirSurvey {
 
   [[nodiscard]] std::uint32_t countPlaces(std::uint32_t side, double total_m2) const {
     const double share = pieces_.area_m2[side / 2] / std::max(total_m2, 1e-9);
-    const auto further = static_cast<std::uint32_t>(pointsOfModel * share);
+    const auto further =
+        static_cast<std::uint32_t>(std::min(pointsOfModel, pointsOfSquareMetre * total_m2) * share);
     const std::uint32_t least = isSmallerThanOpening(localPolygon(side / 2)) ? 1 : pointsOfSide;
     return std::min(least + further, pointsOfSideMax);
   }
@@ -313,19 +323,28 @@ class AirSurvey {
     });
   }
 
-  /// The place of `side` that shares the air of a point on it; nowhere if the way to each is barred.
+  /// The place of `side` that shares the air of a point on it, the nearest one that no surface keeps it from;
+  /// nowhere if the way to each is barred.
   [[nodiscard]] std::uint32_t placeNear(std::uint32_t side, const glm::vec3& point, float height_m) const {
-    std::uint32_t best = nowhere;
-    float least = std::numeric_limits<float>::infinity();
-    for (std::uint32_t place = firstPlace_[side]; place < firstPlace_[side + 1]; ++place) {
-      const float distance = glm::length(places_[place].point - point);
-      if (distance >= least) continue;
-      const glm::vec3 up = height_m * places_[place].normal;
-      if (!isOpen(point + up, places_[place].point + up)) continue;
-      least = distance;
-      best = place;
+    std::bitset<pointsOfSideMax> barred;
+    const std::span<const Place> places = placesOf(side);
+    for (std::size_t round = 0; round < places.size(); ++round) {
+      std::size_t best = 0;
+      float least = std::numeric_limits<float>::infinity();
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const glm::vec3 way = places[i].point - point;
+        const float square = glm::dot(way, way);
+        if (square >= least || barred[i]) continue;
+        least = square;
+        best = i;
+      }
+      const glm::vec3 up = height_m * places[best].normal;
+      if (isOpen(point + up, places[best].point + up)) {
+        return firstPlace_[side] + static_cast<std::uint32_t>(best);
+      }
+      barred.set(best);
     }
-    return best;
+    return nowhere;
   }
 
   /// The place, or the outside, whose air a ray finds.
