@@ -673,7 +673,7 @@ Verdict Interactions<K>::receiveFromPortal(const Receiver& receiver, const Porta
     tally.rays += spotsOfNode;
     if (isUneven(seenOfPortal(world_, portal, receiver))) return Verdict::refineReceiver;
   }
-  const float excess = deviation * power_lm / threshold_lm;
+  const float excess = deviation * power_lm / (rayNoise * threshold_lm);
   const float samples = std::clamp(excess * excess, fewest, most);
   const PortalLight<K> light = elementLightFromPortal(light_, portal, receiver, sight, samples);
   tally.rays += light.rays;
