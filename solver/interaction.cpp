@@ -11,16 +11,13 @@
 #include <geometry/sampling.hpp>
 #include <solver/formfactor.hpp>
 
-#include "lamplight.hpp"
 #include "weak.hpp"
 
 namespace clerestory {
 namespace {
 
-constexpr float touching_m = 1e-5F;       // below this a point counts as in a plane
-constexpr float linearDeviation = 0.29F;  // 1 / sqrt(12): rms of a linear ramp, of its whole rise
+constexpr float touching_m = 1e-5F;  // below this a point counts as in a plane
 // Calibrated on the furnished office (docs/validation.md): errors of surfaces against time.
-constexpr float rayNoise = 2.0F;  // of what rays bring together, in thresholds of a link: noise averages
 constexpr float raysInsteadOfLinks = 32.0F;  // up to so many, links are not even looked for
 constexpr float weakRaysLeast = 16.0F, weakRaysMost = 256.0F;
 constexpr float darkerBySender = 0.2F;  // thresholds that a sender's own shadow may take off
@@ -42,46 +39,15 @@ TransportSettings transportFor(double accuracy) {
 }
 
 template <int K>
-Interactions<K>::Interactions(const SolvedLight<K>& light, std::int32_t domain, const Hierarchy& tree,
-                              const Unshot<K>& unshot, const TransportSettings& settings)
-    : light_(light),
-      world_(light.world()),
+Interactions<K>::Interactions(const World& world, const Hierarchy& tree, const Unshot<K>& unshot,
+                              const TransportSettings& settings)
+    : world_(world),
       tree_(tree),
       unshot_(unshot),
       settings_(settings),
-      domain_(domain),
-      isOpen_(world_.building.domains[static_cast<std::size_t>(domain)].open),
       totalWeight_(std::max(tree.weight[0], 1e-20F)) {
-  if (!isOpen_) portals_ = portalsOf(light, domain, settings.portalFluxRays);
   treeSideOf_.resize(2 * world_.pieces().size(), noNode);
   for (std::uint32_t i = 0; i < tree.sides.size(); ++i) treeSideOf_[tree.sides[i].side] = i;
-}
-
-template <int K>
-std::vector<Sender> Interactions<K>::sendersOutside() const {
-  std::vector<Sender> senders;
-  if (isOpen_ && world_.layout.sky) senders.push_back(openSky);
-  for (std::uint32_t i = 0; i < portals_.size(); ++i) senders.push_back(firstPortal + i);
-  for (std::uint32_t i = 0; i < world_.lamps.size(); ++i) {
-    if (world_.lamps[i].domain() == domain_) senders.push_back(firstLamp + i);
-  }
-  return senders;
-}
-
-template <int K>
-Columns<K> Interactions<K>::lampFlux_lm() const {
-  glm::dvec3 flux_lm(0.0);
-  for (const Lamp& lamp : world_.lamps) {
-    if (lamp.domain() == domain_) flux_lm += lamp.flux_lm() * lamp.color();
-  }
-  return world_.layout.template light<K>(world_.layout.electricColumn(), flux_lm);
-}
-
-template <int K>
-Columns<K> Interactions<K>::portalFlux_lm() const {
-  Columns<K> flux;
-  for (const PortalSender<K>& portal : portals_) flux += portal.flux_lm;
-  return flux;
 }
 
 template <int K>
@@ -614,114 +580,6 @@ void Interactions<K>::addToCluster(SixReceived<K>& next, const Receiver& receive
   const Received<K> arriving =  // on a plane square to the way
       (1.0F / (std::numbers::pi_v<float> * square)) * throughTo(candidate, sentAlong(sender, -direction));
   for (std::size_t k = 0; k < 6; ++k) next[k] += alongDirection(direction, k) * arriving;
-}
-
-// Light that no node of the tree sends: from portals and luminaires, or from the sky where no glass is
-// between.
-template <int K>
-Verdict Interactions<K>::receiveFromOutside(const Receiver& receiver, Sender sender, Incoming<K>& incoming,
-                                            Tally& tally) const {
-  if (sender == openSky) return receiveFromSky(receiver, incoming, tally);
-  if (sender >= firstLamp) return receiveFromLamp(receiver, sender - firstLamp, incoming, tally);
-  return receiveFromPortal(receiver, portals_[sender - firstPortal], incoming, tally);
-}
-
-template <int K>
-Verdict Interactions<K>::receiveFromSky(const Receiver& receiver, Incoming<K>& incoming, Tally& tally) const {
-  if (receiver.isCluster() || (receiver.node != noNode && !tree_.isLeaf(receiver.node)))
-    return Verdict::refineReceiver;
-  const Sequence sequence(mixKeys(receiver.key, 0x5c1));
-  // An element that nothing asks for is lit by a few rays, for the little that it reflects.
-  const std::uint32_t count = receiver.weight > 0.0F ? settings_.skyRays : 32;
-  Columns<K> sum;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const glm::vec3 from = pointOnPolygon<glm::vec3>(receiver.corners, sequence(i, 0), sequence(i, 1)) +
-                           rayOffset_m * receiver.normal;
-    const glm::vec3 direction = cosineDirection(receiver.normal, sequence(i, 2), sequence(i, 3));
-    sum += light_.skyAlong(from, direction);
-  }
-  tally.rays += count;
-  incoming.own.irradiance_lx += (std::numbers::pi_v<float> / static_cast<float>(count)) * sum;
-  return Verdict::accept;
-}
-
-// A portal is a sender like others, but shows the sky instead of a radiosity. Clusters take it whole where
-// all that it could bring, or what that varies over them, is below what may be missed. Elements are divided
-// while its light rises over them; then as many rays bring it as hold their noise below the threshold.
-template <int K>
-Verdict Interactions<K>::receiveFromPortal(const Receiver& receiver, const PortalSender<K>& portal,
-                                           Incoming<K>& incoming, Tally& tally) const {
-  constexpr float deviation = 0.35F;  // of what a pane shows over its area, as a share of the mean
-  constexpr float fewest = 2.0F;
-  constexpr float most = 64.0F;
-  const PortalSight sight = lookAtPortal(light_, portal, receiver);
-  if (sight.light_lx <= 0.0F) return Verdict::nothing;
-  const float power_lm = sight.light_lx * receiver.weight;
-  if (receiver.isCluster()) {
-    if (power_lm > threshold_lm && 0.5F * sight.rise_lx * receiver.weight > threshold_lm)
-      return Verdict::refineReceiver;
-    const auto six = clusterLightFromPortal(light_, portal, tree_, receiver.node, tally.rays);
-    for (std::size_t k = 0; k < 6; ++k) (*incoming.six)[k].irradiance_lx += six[k];
-    return Verdict::accept;
-  }
-  const auto isUneven = [&](float visible) {
-    const float riseError_lm = linearDeviation * sight.rise_lx * receiver.weight * visible;
-    const float shadowError_lm = 0.5F * power_lm * std::sqrt(visible * (1.0F - visible));
-    return std::max(riseError_lm, shadowError_lm) > threshold_lm && canDivide(receiver);
-  };
-  if (power_lm > threshold_lm) {
-    tally.rays += spotsOfNode;
-    if (isUneven(seenOfPortal(world_, portal, receiver))) return Verdict::refineReceiver;
-  }
-  const float excess = deviation * power_lm / (rayNoise * threshold_lm);
-  const float samples = std::clamp(excess * excess, fewest, most);
-  const PortalLight<K> light = elementLightFromPortal(light_, portal, receiver, sight, samples);
-  tally.rays += light.rays;
-  // A shadow that slips between the few spots does not slip between the samples.
-  if (isUneven(light.visible)) return Verdict::refineReceiver;
-  incoming.own.irradiance_lx += light.illuminance_lx;
-  return Verdict::accept;
-}
-
-// As from a portal, but by the intensities of a luminaire, whose unshadowed light is known at any point.
-template <int K>
-Verdict Interactions<K>::receiveFromLamp(const Receiver& receiver, std::uint32_t number,
-                                         Incoming<K>& incoming, Tally& tally) const {
-  constexpr float fewest = 4.0F;
-  constexpr float most = 64.0F;
-  const Lamp& lamp = world_.lamps[number];
-  const auto light = [&](float illuminance_lx) {
-    return world_.layout.template light<K>(world_.layout.electricColumn(),
-                                           static_cast<double>(illuminance_lx) * lamp.color());
-  };
-  const LampSight sight = lookAtLamp(lamp, receiver);
-  const float power_lm = sight.light_lx * receiver.weight;
-  if (receiver.isCluster()) {
-    if (sight.light_lx <= 0.0F) return Verdict::nothing;
-    if (0.5F * power_lm > threshold_lm) return Verdict::refineReceiver;
-    const auto six = clusterLightFromLamp(world_, lamp, tree_, receiver.node);
-    for (std::size_t k = 0; k < 6; ++k) (*incoming.six)[k].irradiance_lx += light(six[k]);
-    tally.rays += spotsOfNode;
-    return Verdict::accept;
-  }
-  const float riseError_lm = linearDeviation * sight.rise_lx * receiver.weight;
-  const auto isUneven = [&](float visible) {
-    const float shadowError_lm = 0.5F * power_lm * std::sqrt(visible * std::max(1.0F - visible, 0.0F));
-    return std::max(visible * riseError_lm, shadowError_lm) > threshold_lm && canDivide(receiver);
-  };
-  if (std::max(power_lm, riseError_lm) > threshold_lm) {
-    tally.rays += spotsOfNode;
-    if (isUneven(seenOfLamp(world_, lamp, receiver, firstLamp + number))) return Verdict::refineReceiver;
-  }
-  if (sight.light_lx <= 0.0F) return Verdict::nothing;
-  const float samples = std::clamp(power_lm / threshold_lm, fewest, most);
-  const LampLight own = elementLightFromLamp(world_, lamp, receiver, sight,
-                                             static_cast<std::uint32_t>(samples), firstLamp + number);
-  tally.rays += static_cast<std::uint64_t>(samples);
-  // A shadow that slips between the few spots does not slip between the samples.
-  if (isUneven(own.visible)) return Verdict::refineReceiver;
-  incoming.own.irradiance_lx += light(own.illuminance_lx);
-  return Verdict::accept;
 }
 
 #define CLERESTORY_INSTANTIATE(K) template class Interactions<K>;

@@ -7,95 +7,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "exchange.hpp"
 #include "linkcache.hpp"
-#include "portals.hpp"
 #include "radiosity.hpp"
 #include "receiver.hpp"
 
 namespace clerestory {
-
-/// What decides whether an interaction is fine enough.
-enum class Oracle {
-  error,            ///< an estimate of the error that it causes
-  transportedPower  ///< a bound on the power that it moves, as in the paper's section 4.1
-};
-
-/// What decides how finely light is transported.
-struct TransportSettings {
-  Oracle oracle = Oracle::error;
-  float epsilon = 2e-6F;                ///< share of the domain's first light that one interaction may err by
-  float elementMin_m = 0.06F;           ///< elements of a smaller radius are not divided
-  std::uint32_t portalFluxRays = 4096;  ///< of each pane, for the power that enters
-  std::uint32_t skyRays = 256;          ///< of an element that sees the sky without glass
-  double endShare = 1e-3;  ///< unshot light, as a share of the mean irradiance, that ends the steps
-  int stepsMax = 200;
-  std::size_t memoryBytes = std::size_t{4} << 30;
-};
-
-/// What an asked accuracy sets, calibrated on the reference scenes (docs/validation.md).
-TransportSettings transportFor(double accuracy);
-
-/// A cluster's light by direction.
-template <int K>
-using Six = std::array<Columns<K>, 6>;
-
-/// What a receiver got in a step: light, and the share of its view that this light came from. The view is
-/// what the same links would bring from senders of radiosity 1; exact links would fill it to 1 in a closed
-/// domain.
-template <int K>
-struct Received {
-  Columns<K> irradiance_lx;
-  float view = 0.0F;
-
-  Received& operator+=(const Received& other) {
-    irradiance_lx += other.irradiance_lx;
-    view += other.view;
-    return *this;
-  }
-  friend Received operator*(float factor, const Received& received) {
-    return {factor * received.irradiance_lx, factor * received.view};
-  }
-};
-template <int K>
-using SixReceived = std::array<Received<K>, 6>;
-
-/// What a receiver collects: an element in `own`, a cluster by direction too, at the place that it is given.
-template <int K>
-struct Incoming {
-  Received<K> own;
-  std::array<Received<K>, 2> ofChildren;  ///< an element's, where it has them: what they do not share
-  SixReceived<K>* six = nullptr;
-};
-
-/// The radiosity that a step sends, pulled up to the root, and the scalars that the oracle looks at.
-template <int K>
-struct Unshot {
-  std::vector<Columns<K>> radiosity_lm_m2;       ///< #nodes: means
-  std::vector<Six<K>> byDirection_lm;            ///< #trunk: power times cosine, of clusters
-  std::vector<float> strength, lowest, highest;  ///< #nodes: of the strongest kind of light [lm/m²]
-
-  void resize(std::size_t nodes) {
-    radiosity_lm_m2.resize(nodes);
-    strength.resize(nodes);
-    lowest.resize(nodes);
-    highest.resize(nodes);
-  }
-};
-
-/// What a task has done, for the statistics.
-struct Tally {
-  std::uint64_t links = 0, reused = 0, rays = 0;
-};
-
-/// Answers of the oracle.
-enum class Verdict { nothing, accept, weak, refineSender, refineReceiver };
-
-/// An end of an interaction that sends: a node of the tree, the open sky, a portal of the domain, or a
-/// luminaire.
-using Sender = std::uint32_t;
-inline constexpr Sender firstPortal = 0x80000000U;
-inline constexpr Sender firstLamp = 0xc0000000U;
-inline constexpr Sender openSky = 0xfffffffeU;
 
 /// A link that the oracle has not refused on sight; its visibility is to be asked for, or known.
 template <int K>
@@ -139,8 +56,8 @@ struct RayBatch {
 template <int K>
 class Interactions {
  public:
-  Interactions(const SolvedLight<K>& light, std::int32_t domain, const Hierarchy& tree,
-               const Unshot<K>& unshot, const TransportSettings& settings);
+  Interactions(const World& world, const Hierarchy& tree, const Unshot<K>& unshot,
+               const TransportSettings& settings);
 
   /// lm that one interaction may err by, or move.
   float threshold_lm = 0.0F;
@@ -176,17 +93,6 @@ class Interactions {
                                   WeakSenders& weak) const;
   /// Adds what the weak senders bring.
   void receiveWeak(const Receiver& receiver, WeakSenders& weak, Incoming<K>& incoming, Tally& tally) const;
-
-  /// Light from a portal, a luminaire or the open sky: judged, and on `accept` added at once.
-  Verdict receiveFromOutside(const Receiver& receiver, Sender sender, Incoming<K>& incoming,
-                             Tally& tally) const;
-
-  /// Portals of the domain or the open sky, and luminaires.
-  [[nodiscard]] std::vector<Sender> sendersOutside() const;
-  /// Light that enters by the portals. [lm]
-  [[nodiscard]] Columns<K> portalFlux_lm() const;
-  /// Light of the domain's luminaires. [lm]
-  [[nodiscard]] Columns<K> lampFlux_lm() const;
 
  private:
   /// What the oracle sees of a sender.
@@ -226,22 +132,11 @@ class Interactions {
   [[nodiscard]] Received<K> sentAlong(NodeIndex cluster, const glm::vec3& direction) const;
   [[nodiscard]] float isotropicShare(NodeIndex sender, float receiverRadius_m) const;
 
-  Verdict receiveFromSky(const Receiver& receiver, Incoming<K>& incoming, Tally& tally) const;
-  Verdict receiveFromPortal(const Receiver& receiver, const PortalSender<K>& portal, Incoming<K>& incoming,
-                            Tally& tally) const;
-
-  Verdict receiveFromLamp(const Receiver& receiver, std::uint32_t lamp, Incoming<K>& incoming,
-                          Tally& tally) const;
-
-  const SolvedLight<K>& light_;
   const World& world_;
   const Hierarchy& tree_;
   const Unshot<K>& unshot_;
   const TransportSettings& settings_;
-  std::int32_t domain_;
-  bool isOpen_;
   float totalWeight_;
-  std::vector<PortalSender<K>> portals_;
   std::vector<std::uint32_t> treeSideOf_;  // #sides of the building; noNode: another domain's
 };
 

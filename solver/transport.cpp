@@ -20,7 +20,8 @@ Transport<K>::Transport(const SolvedLight<K>& light, std::int32_t domain, Radios
       cache_(cache),
       tree_(radiosity.tree),
       links_(links),
-      interactions_(light, domain, tree_, unshot_, settings_) {
+      entering_(light, domain, tree_, settings_),
+      interactions_(world_, tree_, unshot_, settings_) {
   interactions_.linksDark = links == Links::stored;
   received_.resize(tree_.size());
   unshot_.resize(tree_.size());
@@ -31,8 +32,8 @@ Transport<K>::Transport(const SolvedLight<K>& light, std::int32_t domain, Radios
 
 template <int K>
 Columns<K> Transport<K>::enteringPower_lm() const {
-  if (!isOpen_) return interactions_.portalFlux_lm() + interactions_.lampFlux_lm();
-  return interactions_.lampFlux_lm() +
+  if (!isOpen_) return entering_.portalFlux_lm() + entering_.lampFlux_lm();
+  return entering_.lampFlux_lm() +
          world_.layout.template light<K>(
              world_.layout.skyColumn(),
              glm::dvec3(0.5 * world_.sky.horizontalIlluminance_lx() * static_cast<double>(tree_.area_m2[0])));
@@ -48,12 +49,12 @@ template <int K>
 void Transport<K>::send(const std::vector<Columns<K>>& leaves, bool withOutside) {
   pull(leaves);
   const bool enters = withOutside && !isOpen_;
-  const Columns<K> entering_lm = enters ? interactions_.portalFlux_lm() : Columns<K>{};
-  const Columns<K> lamps_lm = enters ? interactions_.lampFlux_lm() : Columns<K>{};
+  const Columns<K> entering_lm = enters ? entering_.portalFlux_lm() : Columns<K>{};
+  const Columns<K> lamps_lm = enters ? entering_.lampFlux_lm() : Columns<K>{};
   std::vector<Sender> senders;
   if (links_ == Links::madeAnew || cache_.size() == 0) senders.push_back(0);
   if (withOutside) {
-    const std::vector<Sender> outside = interactions_.sendersOutside();
+    const std::vector<Sender> outside = entering_.senders();
     senders.insert(senders.end(), outside.begin(), outside.end());
   }
   transportLight(std::move(senders));
@@ -121,7 +122,9 @@ std::vector<Sender> Transport<K>::settle(const Receiver& receiver, std::vector<S
     for (const Sender sender : senders) {
       if (byRays && sender < firstPortal) continue;
       if (sender >= firstPortal) {
-        const Verdict verdict = interactions_.receiveFromOutside(receiver, sender, incoming, work.tally);
+        const Verdict verdict = entering_.receive(
+            receiver, sender, {interactions_.threshold_lm, interactions_.canDivide(receiver)}, incoming,
+            work.tally);
         work.tally.links += verdict == Verdict::accept ? 1U : 0U;
         decide(verdict, sender);
         continue;

@@ -9,6 +9,7 @@
 
 #include <solver/solution.hpp>
 
+#include "entering.hpp"
 #include "interaction.hpp"
 
 namespace clerestory {
@@ -41,7 +42,7 @@ class Transport {
   /// Power of the light that enters from outside, an estimate in open domains, and that of luminaires. [lm]
   [[nodiscard]] Columns<K> enteringPower_lm() const;
   /// Power of the domain's luminaires. [lm]
-  [[nodiscard]] Columns<K> lampPower_lm() const { return interactions_.lampFlux_lm(); }
+  [[nodiscard]] Columns<K> lampPower_lm() const { return entering_.lampFlux_lm(); }
   /// Power that the last `send` brought in through portals, as its receivers add it up. [lm]
   [[nodiscard]] const Columns<K>& enteredPower_lm() const { return entered_lm_; }
   /// Sets what one interaction may err by, from the light that the domain starts with. [lm]
@@ -104,6 +105,7 @@ class Transport {
   std::vector<Received<K>> received_;                // #nodes
   std::vector<SixReceived<K>> receivedByDirection_;  // #trunk
   std::vector<Work> work_;                           // #trunk
+  EnteringLight<K> entering_;
   Interactions<K> interactions_;
   Columns<K> entered_lm_;
   double sent_lm_ = 0.0, missed_lm_ = 0.0;
