@@ -19,7 +19,7 @@ namespace {
 constexpr float touching_m = 1e-5F;  // below this a point counts as in a plane
 // Calibrated on the furnished office (docs/validation.md): errors of surfaces against time.
 constexpr float raysInsteadOfLinks = 32.0F;  // up to so many, links are not even looked for
-constexpr float weakRaysLeast = 8.0F, weakRaysMost = 256.0F;
+constexpr float weakRaysLeast = 16.0F, weakRaysMost = 256.0F;
 constexpr float darkerBySender = 0.2F;  // thresholds that a sender's own shadow may take off
 constexpr float clusterTakes = 5.0F;    // thresholds that a cluster takes as one mean
 

@@ -29,7 +29,8 @@ inline constexpr double smallestSurface_m2 = 0.1;
 
 /// Illuminances that two solutions of one stage are compared by.
 struct Measured {
-  std::vector<double> area_m2, surface_lx;  ///< surfaces of more than that; area 0: not compared
+  std::vector<std::uint32_t> surface;       ///< those of more than that, by number
+  std::vector<double> area_m2, surface_lx;  ///< theirs; area 0: not compared
   std::vector<double> place_lx;
 };
 
@@ -136,6 +137,7 @@ Measured measure(const Stage<K>& stage, std::vector<Radiosity<K>> rooms) {
   ElementMesh mesh;
   for (const SurfaceValue& row : measureSurfaces(inside, 0.0, mesh)) {
     if (row.area_m2 <= smallestSurface_m2) continue;
+    measured.surface.push_back(row.surface);
     measured.area_m2.push_back(row.area_m2);
     measured.surface_lx.push_back(row.illuminanceMean_lx);
   }
