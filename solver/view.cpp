@@ -79,6 +79,7 @@ class Picture {
     forEachIndex(samples_.size(), 64, [&](std::size_t i) { gatherSample(i); });
     evenDeviations();
     gatherNoisyAgain();
+    takeOutliersIn();
     smooth();
     LuminanceImage image{camera_.width(), camera_.height(), {}, {}};
     image.pixels_cd_m2.resize(static_cast<std::size_t>(camera_.width()) *
@@ -178,32 +179,66 @@ class Picture {
     own.reflectedDeviation_lx = arriving.reflectedDeviation_lx;
   }
 
-  /// What a sample's own rays tell of its noise is noise itself, and nothing where they happen to agree: the
-  /// mean variance of the samples around it on its surface is taken instead.
-  void evenDeviations() {
-    std::vector<Sample<K>> even = samples_;
-    forEachIndex(first_.size() - 1, 256, [&](std::size_t i) {
-      const int column = static_cast<int>(i % static_cast<std::size_t>(columns_));
-      const int row = static_cast<int>(i / static_cast<std::size_t>(columns_));
-      for (std::size_t s = first_[i]; s < first_[i + 1]; ++s) {
-        float direct = 0.0F;
-        float reflected = 0.0F;
-        float count = 0.0F;
-        for (int y = std::max(row - 1, 0); y <= std::min(row + 1, rows_ - 1); ++y) {
-          for (int x = std::max(column - 1, 0); x <= std::min(column + 1, columns_ - 1); ++x) {
-            for (const Sample<K>& other : samplesIn(x, y)) {
-              if (!isOneSurface(samples_[s], other)) continue;
-              direct += other.directDeviation_lx * other.directDeviation_lx;
-              reflected += other.reflectedDeviation_lx * other.reflectedDeviation_lx;
-              count += 1.0F;
-            }
-          }
+  /// Calls `visit` for each sample on the surface of sample `s` in its tile and those around, itself too.
+  template <class Visit>
+  void aroundSample(std::size_t tileIndex, std::size_t s, const Visit& visit) const {
+    const int column = static_cast<int>(tileIndex % static_cast<std::size_t>(columns_));
+    const int row = static_cast<int>(tileIndex / static_cast<std::size_t>(columns_));
+    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, rows_ - 1); ++y) {
+      for (int x = std::max(column - 1, 0); x <= std::min(column + 1, columns_ - 1); ++x) {
+        for (const Sample<K>& other : samplesIn(x, y)) {
+          if (isOneSurface(samples_[s], other)) visit(other);
         }
-        even[s].directDeviation_lx = std::sqrt(direct / count);
-        even[s].reflectedDeviation_lx = std::sqrt(reflected / count);
       }
+    }
+  }
+
+  /// Makes each sample anew from those around it on its surface: `change(result, tile, sample's number)`.
+  template <class Change>
+  void changeAll(const Change& change) {
+    std::vector<Sample<K>> changed = samples_;
+    forEachIndex(first_.size() - 1, 256, [&](std::size_t i) {
+      for (std::size_t s = first_[i]; s < first_[i + 1]; ++s) change(changed[s], i, s);
     });
-    std::swap(samples_, even);
+    std::swap(samples_, changed);
+  }
+
+  /// What a sample's own rays tell of its noise is noise itself, and nothing where they happen to agree: the
+  /// mean variance of the samples around it is taken instead.
+  void evenDeviations() {
+    changeAll([&](Sample<K>& result, std::size_t tileIndex, std::size_t s) {
+      float direct = 0.0F;
+      float reflected = 0.0F;
+      float count = 0.0F;
+      aroundSample(tileIndex, s, [&](const Sample<K>& other) {
+        direct += other.directDeviation_lx * other.directDeviation_lx;
+        reflected += other.reflectedDeviation_lx * other.reflectedDeviation_lx;
+        count += 1.0F;
+      });
+      result.directDeviation_lx = std::sqrt(direct / count);
+      result.reflectedDeviation_lx = std::sqrt(reflected / count);
+    });
+  }
+
+  /// A sample that is darker or brighter than all around it is a point in a seam, or noise: it is taken into
+  /// their range. What is drawn as a line, as a shadow's edge is, has its like beside it.
+  void takeOutliersIn() {
+    constexpr int fewest = 5;
+    changeAll([&](Sample<K>& result, std::size_t tileIndex, std::size_t s) {
+      float low_lx = std::numeric_limits<float>::infinity();
+      float high_lx = 0.0F;
+      int others = 0;
+      aroundSample(tileIndex, s, [&](const Sample<K>& other) {
+        if (&other == &samples_[s]) return;
+        const float lx = world_.layout.strength(other.direct_lx);
+        low_lx = std::min(low_lx, lx);
+        high_lx = std::max(high_lx, lx);
+        ++others;
+      });
+      const float own_lx = world_.layout.strength(result.direct_lx);
+      if (others < fewest || own_lx <= 0.0F || (own_lx >= low_lx && own_lx <= high_lx)) return;
+      result.direct_lx = (std::clamp(own_lx, low_lx, high_lx) / own_lx) * result.direct_lx;
+    });
   }
 
   /// Gathers direct light again with more samples where its noise would show.
