@@ -38,6 +38,33 @@ glm::dvec2 mainDirection(const Building& building, std::int32_t domain) {
 
 }  // namespace
 
+AirColumn airColumn(const Building& building, const RayScene& rays, std::int32_t domain,
+                    const glm::dvec2& place, double bottom_m) {
+  const Pieces& pieces = building.model.pieces;
+  AirColumn column;
+  glm::vec3 from(glm::dvec3(place, bottom_m) - rays.origin());
+  from.z -= beneath_m;
+  double last_m = 0.0;
+  bool lastIsOurs = false;
+  for (std::size_t meeting = 0; meeting < meetingsMost; ++meeting) {
+    const auto hit = rays.nearest(from, {0, 0, 1}, RayScene::Barrier::opaqueAndGlass);
+    if (!hit) break;
+    from.z += hit.distance_m + rayOffset_m;
+    const glm::dvec3& normal = pieces.normal[hit.piece];
+    if (std::abs(normal.z) < 1e-3) continue;  // grazed
+    const glm::dvec3& corner = pieces.points[pieces.polygons[hit.piece][0]];
+    const double height_m = corner.z - glm::dot(glm::dvec2(normal), place - glm::dvec2(corner)) / normal.z;
+    const std::uint32_t below = hit.side();
+    const bool belowIsOurs = building.sideDomain[below] == domain;
+    if (meeting > 0 && (lastIsOurs || belowIsOurs) && height_m > last_m)
+      column.spans.push_back({last_m, height_m});
+    if (std::abs(normal.z) > upward) column.treads.push_back({height_m, hit.piece});
+    last_m = height_m;
+    lastIsOurs = building.sideDomain[below ^ 1U] == domain;
+  }
+  return column;
+}
+
 AirMap::AirMap(const Building& building, const RayScene& rays, std::int32_t domain,
                std::span<const std::uint32_t> sides)
     : along_(mainDirection(building, domain)), across_(-along_.y, along_.x) {
@@ -59,36 +86,11 @@ AirMap::AirMap(const Building& building, const RayScene& rays, std::int32_t doma
   low_ -= offset * cell_m_;
   columns_ = static_cast<std::uint32_t>(std::ceil((high.x - low_.x) / cell_m_)) + 1;
   rows_ = static_cast<std::uint32_t>(std::ceil((high.y - low_.y) / cell_m_)) + 1;
-  spans_.resize(size());
-  treads_.resize(size());
-  forEachIndex(size(), 256,
-               [&](std::size_t cell) { look(building, rays, domain, static_cast<std::uint32_t>(cell)); });
-}
-
-void AirMap::look(const Building& building, const RayScene& rays, std::int32_t domain, std::uint32_t cell) {
-  const Pieces& pieces = building.model.pieces;
-  const glm::dvec2 place = middleOf(cell);
-  glm::vec3 from(glm::dvec3(place, bottom_m_) - rays.origin());
-  from.z -= beneath_m;
-  double last_m = 0.0;
-  bool lastIsOurs = false;
-  for (std::size_t meeting = 0; meeting < meetingsMost; ++meeting) {
-    const auto hit = rays.nearest(from, {0, 0, 1}, RayScene::Barrier::opaqueAndGlass);
-    if (!hit) break;
-    from.z += hit.distance_m + rayOffset_m;
-    const glm::dvec3& normal = pieces.normal[hit.piece];
-    if (std::abs(normal.z) < 1e-3) continue;  // grazed
-    const glm::dvec3& corner = pieces.points[pieces.polygons[hit.piece][0]];
-    const double height_m = corner.z - glm::dot(glm::dvec2(normal), place - glm::dvec2(corner)) / normal.z;
-    const std::uint32_t below = hit.side();
-    const bool belowIsOurs = building.sideDomain[below] == domain;
-    if (meeting > 0 && (lastIsOurs || belowIsOurs) && height_m > last_m) {
-      spans_[cell].push_back({last_m, height_m});
-    }
-    if (std::abs(normal.z) > upward) treads_[cell].push_back({height_m, hit.piece});
-    last_m = height_m;
-    lastIsOurs = building.sideDomain[below ^ 1U] == domain;
-  }
+  columnOf_.resize(size());
+  forEachIndex(size(), 256, [&](std::size_t cell) {
+    columnOf_[cell] =
+        airColumn(building, rays, domain, middleOf(static_cast<std::uint32_t>(cell)), bottom_m_);
+  });
 }
 
 std::uint32_t AirMap::cellAt(const glm::dvec2& place) const {

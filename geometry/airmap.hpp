@@ -22,6 +22,16 @@ struct Tread {
   std::uint32_t piece;
 };
 
+/// What stands over a place of the plan, from below.
+struct AirColumn {
+  std::vector<AirSpan> spans;
+  std::vector<Tread> treads;
+};
+
+/// The column of a domain's air over a place, looked for from `bottom_m` upwards.
+AirColumn airColumn(const Building& building, const RayScene& rays, std::int32_t domain,
+                    const glm::dvec2& place, double bottom_m);
+
 /// Square cells along the domain's main walls, so that a turned model has the same cells. Row by row.
 class AirMap {
  public:
@@ -43,19 +53,18 @@ class AirMap {
   /// The middle of the edge to that neighbour.
   [[nodiscard]] glm::dvec2 edgeTo(std::uint32_t cell, int way) const;
 
-  [[nodiscard]] const std::vector<AirSpan>& spans(std::uint32_t cell) const { return spans_[cell]; }
-  [[nodiscard]] const std::vector<Tread>& treads(std::uint32_t cell) const { return treads_[cell]; }
+  [[nodiscard]] const AirColumn& column(std::uint32_t cell) const { return columnOf_[cell]; }
+  [[nodiscard]] const std::vector<AirSpan>& spans(std::uint32_t cell) const { return column(cell).spans; }
+  [[nodiscard]] const std::vector<Tread>& treads(std::uint32_t cell) const { return column(cell).treads; }
+  [[nodiscard]] double bottom_m() const { return bottom_m_; }
 
  private:
-  void look(const Building& building, const RayScene& rays, std::int32_t domain, std::uint32_t cell);
-
   glm::dvec2 along_{1.0, 0.0}, across_{0.0, 1.0};  // unit
   glm::dvec2 low_{0.0};                            // in the raster's frame
   double bottom_m_ = 0.0;
   double cell_m_ = 0.0;
   std::uint32_t columns_ = 0, rows_ = 0;
-  std::vector<std::vector<AirSpan>> spans_;
-  std::vector<std::vector<Tread>> treads_;
+  std::vector<AirColumn> columnOf_;  // #cells
 };
 
 }  // namespace clerestory

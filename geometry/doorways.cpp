@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 
 #include "cut.hpp"
 
@@ -19,64 +21,40 @@ constexpr double revealLeast_m = 0.02;
 constexpr double reach_m = 0.35;  // from the raster's end of a doorway to the model's
 constexpr double facing = 0.85;   // cosine between a reveal's normal and the doorway's direction
 
-/// An upright face of the domain in plan.
-struct Upright {
-  glm::dvec2 from, to, normal;
+/// A place of the model's that a doorway may end at.
+struct End {
+  glm::dvec2 place_m;
+  double distance_m, depth_m;
 };
 
-std::vector<Upright> uprightsOf(const Building& building, std::int32_t domain, double floor_m) {
-  const Pieces& pieces = building.model.pieces;
-  std::vector<Upright> uprights;
-  for (std::uint32_t piece = 0; piece < pieces.size(); ++piece) {
-    const glm::dvec3& normal = pieces.normal[piece];
-    if (building.sideDomain[2 * piece] != domain && building.sideDomain[2 * piece + 1] != domain) continue;
-    if (std::abs(normal.z) > 0.02) continue;
-    const glm::dvec2 along = glm::normalize(glm::dvec2(-normal.y, normal.x));
-    double low_m = std::numeric_limits<double>::infinity();
-    double high_m = -low_m;
-    Upright upright{{}, {}, glm::dvec2(normal)};
-    double first = low_m;
-    double last = -low_m;
-    for (const std::uint32_t corner : pieces.polygons[piece]) {
-      const glm::dvec3& point = pieces.points[corner];
-      low_m = std::min(low_m, point.z);
-      high_m = std::max(high_m, point.z);
-      const double place = glm::dot(glm::dvec2(point), along);
-      if (place < first) {
-        first = place;
-        upright.from = glm::dvec2(point);
-      }
-      if (place > last) {
-        last = place;
-        upright.to = glm::dvec2(point);
-      }
-    }
-    const double usable_m = std::min(high_m, floor_m + 2.0) - std::max(low_m, floor_m);
-    if (usable_m >= uprightHeight_m) uprights.push_back(upright);
-  }
-  return uprights;
-}
-
+/// The model's own end of a doorway, for the raster's: in the middle of the deepest reveal about there, so
+/// that a frame within a reveal and a cell more or less change nothing.
 glm::dvec2 snapped(const std::vector<Upright>& uprights, const glm::dvec2& end, const glm::dvec2& direction) {
-  glm::dvec2 best = end;
-  double least_m = reach_m;
-  const auto offer = [&](const glm::dvec2& place) {
+  constexpr double aboutThere_m = 0.15;
+  constexpr double alike_m = 0.01;
+  std::vector<End> ends;
+  const auto offer = [&](const glm::dvec2& place, double depth_m) {
     const double distance_m = glm::length(place - end);
-    if (distance_m >= least_m) return;
-    least_m = distance_m;
-    best = place;
+    if (distance_m < reach_m) ends.push_back({place, distance_m, depth_m});
   };
   for (const Upright& upright : uprights) {
     const double depth_m = glm::length(upright.to - upright.from);
     if (depth_m < revealLeast_m || depth_m > revealMost_m) continue;
-    if (std::abs(glm::dot(upright.normal, direction)) >= facing) offer(0.5 * (upright.from + upright.to));
+    if (std::abs(glm::dot(upright.normal, direction)) >= facing)
+      offer(0.5 * (upright.from + upright.to), depth_m);
   }
-  if (least_m < reach_m) return best;
-  for (const Upright& upright : uprights) {
-    offer(upright.from);
-    offer(upright.to);
+  if (ends.empty()) {
+    for (const Upright& upright : uprights) {
+      offer(upright.from, 0.0);
+      offer(upright.to, 0.0);
+    }
   }
-  return best;
+  if (ends.empty()) return end;
+  const double nearest_m = std::ranges::min(ends, {}, &End::distance_m).distance_m;
+  std::erase_if(ends, [&](const End& other) { return other.distance_m > nearest_m + aboutThere_m; });
+  const double deepest_m = std::ranges::max(ends, {}, &End::depth_m).depth_m;
+  std::erase_if(ends, [&](const End& other) { return other.depth_m < deepest_m - alike_m; });
+  return std::ranges::min(ends, {}, &End::distance_m).place_m;
 }
 
 /// Foot and head of the air over the opening's cells.
@@ -93,12 +71,64 @@ std::pair<double, double> heightsOf(const RoomAir& air, const Storey& storey, co
   return {std::max(low_m, storey.floor_m - 0.5), high_m};
 }
 
+/// Makes an upright reach over a part of its plane as well.
+void add(Upright& upright, const Upright& part) {
+  const glm::dvec2 along(-upright.normal.y, upright.normal.x);
+  for (const glm::dvec2& place : {part.from, part.to}) {
+    if (glm::dot(place - upright.from, along) < 0.0) upright.from = place;
+    if (glm::dot(place - upright.to, along) > 0.0) upright.to = place;
+  }
+  upright.low_m = std::min(upright.low_m, part.low_m);
+  upright.high_m = std::max(upright.high_m, part.high_m);
+}
+
+/// Polygons of the pieces: how one was divided changes nothing.
+std::vector<Upright> wholeOnes(const std::vector<Upright>& pieces) {
+  std::map<std::uint32_t, Upright> byPolygon;
+  for (const Upright& piece : pieces) add(byPolygon.try_emplace(piece.polygon, piece).first->second, piece);
+  std::vector<Upright> wholes;
+  for (const auto& [polygon, whole] : byPolygon) wholes.push_back(whole);
+  return wholes;
+}
+
 }  // namespace
+
+std::vector<Upright> uprightsOf(const Building& building, std::int32_t domain) {
+  const Pieces& pieces = building.model.pieces;
+  std::set<std::uint32_t> looksIntoDomain;  // polygons
+  for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
+    if (building.sideDomain[side] == domain) looksIntoDomain.insert(pieces.polygon[side / 2]);
+  }
+  std::vector<Upright> uprights;
+  for (std::uint32_t piece = 0; piece < pieces.size(); ++piece) {
+    const glm::dvec3& normal = pieces.normal[piece];
+    if (std::abs(normal.z) > 0.02 || !looksIntoDomain.contains(pieces.polygon[piece])) continue;
+    const auto corners = pieces.polygons[piece];
+    const glm::dvec2 any(pieces.points[corners[0]]);
+    Upright upright{any,
+                    any,
+                    glm::dvec2(normal),
+                    std::numeric_limits<double>::infinity(),
+                    -std::numeric_limits<double>::infinity(),
+                    pieces.polygon[piece]};
+    for (const std::uint32_t corner : corners) {
+      const double height_m = pieces.points[corner].z;
+      add(upright, {glm::dvec2(pieces.points[corner]), glm::dvec2(pieces.points[corner]), upright.normal,
+                    height_m, height_m, upright.polygon});
+    }
+    uprights.push_back(upright);
+  }
+  return uprights;
+}
 
 std::vector<Doorway> doorwaysOf(const Building& building, const RoomAir& air, const Storey& storey) {
   std::vector<Doorway> doorways;
   if (storey.parted.openings.empty()) return doorways;
-  const std::vector<Upright> uprights = uprightsOf(building, air.domain, storey.floor_m);
+  std::vector<Upright> uprights = wholeOnes(uprightsOf(building, air.domain));
+  std::erase_if(uprights, [&](const Upright& upright) {
+    return std::min(upright.high_m, storey.floor_m + 2.0) - std::max(upright.low_m, storey.floor_m) <
+           uprightHeight_m;
+  });
   for (const Opening& opening : storey.parted.openings) {
     const auto [low_m, high_m] = heightsOf(air, storey, opening);
     const glm::dvec2 way = opening.to_m - opening.from_m;

@@ -25,6 +25,16 @@ struct RoomAir {
   std::vector<std::vector<Doorway>> doorways{};  ///< by storey
 };
 
+/// An upright piece in plan.
+struct Upright {
+  glm::dvec2 from, to, normal;
+  double low_m, high_m;
+  std::uint32_t polygon;  ///< that it is a part of
+};
+
+/// Those of polygons that look into a domain, also where a piece is hidden in a wall.
+std::vector<Upright> uprightsOf(const Building& building, std::int32_t domain);
+
 /// The openings of a storey. Their ends lie in the middle of the reveals that they stand between, else at the
 /// nearest upright edge of a wall, else where the raster has them.
 std::vector<Doorway> doorwaysOf(const Building& building, const RoomAir& air, const Storey& storey);

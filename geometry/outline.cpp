@@ -7,125 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <unordered_map>
 
-#include "triangulate.hpp"
+#include "planeedges.hpp"
 
 namespace clerestory {
 namespace {
-
-/// Directed edges in a plane; opposite ones cancel.
-class EdgeSum {
- public:
-  void add(std::uint32_t from, std::uint32_t to, int times) {
-    if (from < to) edges_.push_back({from, to, times});
-    if (from > to) edges_.push_back({to, from, -times});
-  }
-
-  /// What is left, each with positive `times`, by rising indices.
-  std::vector<PlaneEdge> take() {
-    std::sort(edges_.begin(), edges_.end(), [](const PlaneEdge& a, const PlaneEdge& b) {
-      return a.from != b.from ? a.from < b.from : a.to < b.to;
-    });
-    std::vector<PlaneEdge> result;
-    for (std::size_t i = 0; i < edges_.size();) {
-      PlaneEdge sum = edges_[i];
-      for (++i; i < edges_.size() && edges_[i].from == sum.from && edges_[i].to == sum.to; ++i) {
-        sum.times += edges_[i].times;
-      }
-      if (sum.times > 0) result.push_back(sum);
-      if (sum.times < 0) result.push_back({sum.to, sum.from, -sum.times});
-    }
-    edges_.clear();
-    return result;
-  }
-
- private:
-  std::vector<PlaneEdge> edges_;
-};
-
-/// A plane's points for looking up which lie near a segment.
-class FlatPoints {
- public:
-  FlatPoints(std::span<const glm::dvec2> flat, std::vector<std::uint32_t> members)
-      : flat_(flat), members_(std::move(members)) {
-    std::sort(members_.begin(), members_.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return flat_[a].x != flat_[b].x ? flat_[a].x < flat_[b].x : flat_[a].y < flat_[b].y;
-    });
-    for (const std::uint32_t member : members_) x_.push_back(flat_[member].x);
-    // Upright edges meet every point above the same x in the sorted list: keep a second list by y for them.
-    byY_ = members_;
-    std::sort(byY_.begin(), byY_.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return flat_[a].y != flat_[b].y ? flat_[a].y < flat_[b].y : flat_[a].x < flat_[b].x;
-    });
-    for (const std::uint32_t member : byY_) y_.push_back(flat_[member].y);
-  }
-
-  /// Points strictly inside the segment from a to b, in its order.
-  [[nodiscard]] std::vector<std::uint32_t> on(std::uint32_t a, std::uint32_t b, double tolerance_m) const {
-    const glm::dvec2 way = flat_[b] - flat_[a];
-    const double length = glm::length(way);
-    std::vector<std::pair<double, std::uint32_t>> found;
-    const auto look = [&](const std::vector<std::uint32_t>& list, const std::vector<double>& place,
-                          double low, double high) {
-      const auto begin = std::lower_bound(place.begin(), place.end(), low - tolerance_m) - place.begin();
-      const auto end = std::upper_bound(place.begin(), place.end(), high + tolerance_m) - place.begin();
-      for (auto i = begin; i < end; ++i) {
-        const std::uint32_t point = list[static_cast<std::size_t>(i)];
-        if (point == a || point == b) continue;
-        const glm::dvec2 offset = flat_[point] - flat_[a];
-        const double along = glm::dot(offset, way) / length;
-        if (along <= 0.0 || along >= length || std::abs(cross2(offset, way)) > tolerance_m * length) continue;
-        found.emplace_back(along, point);
-      }
-    };
-    const auto range = [](double p, double q) { return std::pair(std::min(p, q), std::max(p, q)); };
-    const auto [lowX, highX] = range(flat_[a].x, flat_[b].x);
-    const auto [lowY, highY] = range(flat_[a].y, flat_[b].y);
-    if (highX - lowX <= highY - lowY) {
-      look(members_, x_, lowX, highX);
-    } else {
-      look(byY_, y_, lowY, highY);
-    }
-    std::sort(found.begin(), found.end());
-    std::vector<std::uint32_t> result;
-    for (const auto& [along, point] : found) result.push_back(point);
-    return result;
-  }
-
- private:
-  std::span<const glm::dvec2> flat_;
-  std::vector<std::uint32_t> members_, byY_;
-  std::vector<double> x_, y_;
-};
-
-std::vector<std::uint32_t> endsOf(std::span<const PlaneEdge> edges) {
-  std::vector<std::uint32_t> ends;
-  for (const PlaneEdge& edge : edges) {
-    ends.push_back(edge.from);
-    ends.push_back(edge.to);
-  }
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  return ends;
-}
-
-/// Divides edges at the ends of others that lie on them, so that neighbours with T-junctions cancel too.
-std::vector<PlaneEdge> splitAtPoints(std::span<const glm::dvec2> flat, std::span<const PlaneEdge> edges,
-                                     double tolerance_m) {
-  const FlatPoints points(flat, endsOf(edges));
-  EdgeSum sum;
-  for (const PlaneEdge& edge : edges) {
-    std::uint32_t last = edge.from;
-    for (const std::uint32_t point : points.on(edge.from, edge.to, tolerance_m)) {
-      sum.add(last, point, edge.times);
-      last = point;
-    }
-    sum.add(last, edge.to, edge.times);
-  }
-  return sum.take();
-}
 
 /// One cluster on its way to polygons. Local indices are places in `globals`.
 class Region {
@@ -286,52 +173,9 @@ class Region {
 
   /// Divides edges where they cross; new points go to the soup.
   std::vector<PlaneEdge> splitAtCrossings(std::span<const PlaneEdge> edges) {
-    std::vector<std::vector<std::pair<double, std::uint32_t>>> cuts(edges.size());
-    std::vector<std::uint32_t> order(edges.size());
-    std::iota(order.begin(), order.end(), 0U);
-    const auto lowX = [&](std::uint32_t e) { return std::min(flat_[edges[e].from].x, flat_[edges[e].to].x); };
-    const auto highX = [&](std::uint32_t e) {
-      return std::max(flat_[edges[e].from].x, flat_[edges[e].to].x);
-    };
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return lowX(a) != lowX(b) ? lowX(a) < lowX(b) : a < b;
+    return clerestory::splitAtCrossings(flat_, edges, [this](const glm::dvec2& place) {
+      return crossingPoint(onGrid(frame_.lift(place), tolerances_.grid_m));
     });
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      for (std::size_t j = i + 1; j < order.size() && lowX(order[j]) <= highX(order[i]); ++j) {
-        cut(edges, order[i], order[j], cuts);
-      }
-    }
-    EdgeSum sum;
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-      std::sort(cuts[e].begin(), cuts[e].end());
-      std::uint32_t last = edges[e].from;
-      for (const auto& [along, point] : cuts[e]) {
-        sum.add(last, point, edges[e].times);
-        last = point;
-      }
-      sum.add(last, edges[e].to, edges[e].times);
-    }
-    return sum.take();
-  }
-
-  void cut(std::span<const PlaneEdge> edges, std::uint32_t first, std::uint32_t second,
-           std::vector<std::vector<std::pair<double, std::uint32_t>>>& cuts) {
-    const PlaneEdge& e = edges[first];
-    const PlaneEdge& f = edges[second];
-    if (e.from == f.from || e.from == f.to || e.to == f.from || e.to == f.to) return;
-    const glm::dvec2 start = flat_[e.from];
-    const glm::dvec2 way = flat_[e.to] - start;
-    const glm::dvec2 otherStart = flat_[f.from];
-    const glm::dvec2 otherWay = flat_[f.to] - otherStart;
-    const double scale = cross2(way, otherWay);
-    if (std::abs(scale) < 1e-12) return;
-    const double t = cross2(otherStart - start, otherWay) / scale;
-    const double s = cross2(otherStart - start, way) / scale;
-    if (t <= 0.0 || t >= 1.0 || s <= 0.0 || s >= 1.0) return;
-    const glm::dvec3 position = onGrid(frame_.lift(start + t * way), tolerances_.grid_m);
-    const std::uint32_t point = crossingPoint(position);
-    cuts[first].emplace_back(t, point);
-    cuts[second].emplace_back(s, point);
   }
 
   /// The region's point at `position`, or a new one.

@@ -66,7 +66,7 @@ class PlaneClusters {
   [[nodiscard]] bool fits(const Face& face, const Face& seed) const {
     // Thin faces have uncertain normals; faces that the weld has bent are taken for the planes they were.
     const double thickness_m = std::max(face.thickness_m, 1e-9);
-    double angle_rad = std::min(0.5, tolerances_.coplanarAngle_rad + 4.0 * tolerances_.grid_m / thickness_m);
+    double angle_rad = std::min(0.5, tolerances_.coplanarAngle_rad + 4.0 * tolerances_.drawn_m / thickness_m);
     double height_m = tolerances_.coplanar_m;
     if (soup_.displaced[face.index] || soup_.displaced[seed.index]) {
       angle_rad = std::max(angle_rad,

@@ -16,7 +16,8 @@
 namespace clerestory {
 
 struct Tolerances {
-  double grid_m = 1e-5;        ///< points lie on multiples of it, so that every file format gives equal bits
+  double grid_m = 1e-9;        ///< points lie on multiples of it, so that every file format gives equal bits
+  double drawn_m = 1e-5;       ///< how exactly files give coordinates
   double weld_m = 1e-3;        ///< points nearer than this are one
   double planar_m = 1e-3;      ///< a polygon's corners keep to its plane
   double coplanar_m = 2.5e-4;  ///< corners of a face that joins another's plane

@@ -69,8 +69,7 @@ double ceilingOver(const AirMap& map, double floor_m) {
   return most == cells.end() ? floor_m + headroom_m : most->first;
 }
 
-StoreyCells cellsOf(const AirMap& map, const Pieces& pieces, double floor_m, double end_m) {
-  const double ceiling_m = std::min(ceilingOver(map, floor_m), end_m);
+StoreyCells cellsOf(const AirMap& map, const Pieces& pieces, double floor_m, double end_m, double ceiling_m) {
   const double high_m = floor_m + std::clamp(ceiling_m - floor_m - underCeiling_m, headroom_m, overDoors_m);
   StoreyCells cells{std::vector<bool>(map.size()), std::vector<bool>(map.size()),
                     std::vector<std::int32_t>(map.size(), -1)};
@@ -97,7 +96,9 @@ std::vector<Storey> storeysOf(const AirMap& map, const Pieces& pieces) {
   const std::vector<double> floors = floorsOf(map);
   for (std::size_t i = 0; i < floors.size(); ++i) {
     const double end_m = i + 1 < floors.size() ? floors[i + 1] : std::numeric_limits<double>::infinity();
-    Storey storey{floors[i], end_m, partAtNecks(map, cellsOf(map, pieces, floors[i], end_m)), {}};
+    const double ceiling_m = std::min(ceilingOver(map, floors[i]), end_m);
+    Storey storey{
+        floors[i], end_m, ceiling_m, partAtNecks(map, cellsOf(map, pieces, floors[i], end_m, ceiling_m)), {}};
     if (storey.parted.count == 0) continue;
     storey.nearest = nearestRegion(map, storey.parted.region);
     storeys.push_back(std::move(storey));

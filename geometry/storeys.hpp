@@ -9,6 +9,7 @@ namespace clerestory {
 
 struct Storey {
   double floor_m, end_m;  ///< heights of its floor and of the next storey's
+  double ceiling_m;       ///< of most of its ceiling
   Parted parted;
   std::vector<std::int32_t> nearest;  ///< #cells: region of the nearest cell that has one
 };

@@ -354,7 +354,7 @@ void tessellateCage(const Scene& scene, const Cage& cage, const Tolerances& tole
     findings.note(code, scene.points, corners, cage.object, 0.0, count);
     findings.tell(code, message);
   };
-  const std::optional<LimitCage> limit = limitCage(scene, cage, tolerances.grid_m);
+  const std::optional<LimitCage> limit = limitCage(scene, cage, tolerances.drawn_m);
   if (!limit) {
     note("G210", 1, "a subdivision cage could not be read and was left out");
     return;

@@ -11,7 +11,7 @@
 
 namespace clerestory {
 
-/// An edge that has the region on its left `times` more often than on its right (≠ 0).
+/// An edge that has the region on its left `times` more often than on its right; 0: it divides the region.
 struct PlaneEdge {
   std::uint32_t from, to;
   int times;

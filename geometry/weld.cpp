@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numeric>
 #include <unordered_map>
 
@@ -159,36 +161,89 @@ std::vector<std::array<std::uint32_t, 3>> trianglesOf(std::span<const glm::dvec3
   return result;
 }
 
+/// Fills `places` with where points lie that faces use, once each and in lexicographic order; tells the place
+/// of each point, NearPoints::none for one that no face uses.
+std::vector<std::uint32_t> distinctPlaces(const Soup& soup, std::span<const glm::dvec3> points,
+                                          std::vector<glm::dvec3>& places) {
+  std::vector<bool> used(points.size(), false);
+  for (const std::uint32_t corner : soup.faces.corners) used[corner] = true;
+  Loop order;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (used[i]) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return lexicographicallyLess(points[a], points[b]); });
+  std::vector<std::uint32_t> placeOf(points.size(), NearPoints::none);
+  for (const std::uint32_t point : order) {
+    if (places.empty() || places.back() != points[point]) places.push_back(points[point]);
+    placeOf[point] = static_cast<std::uint32_t>(places.size() - 1);
+  }
+  return placeOf;
+}
+
+/// The area of the largest surface (one object in one material) at each place, as its logarithm in steps so
+/// wide that rounding does not tell surfaces of one size apart. Neither turning a model nor dividing its
+/// faces changes it.
+std::vector<long> weightsOf(const Soup& soup, std::span<const std::uint32_t> placeOf, std::size_t places) {
+  constexpr double stepsOfE = 1e4;
+  constexpr double least_m2 = 1e-12;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> surfaces_m2;
+  for (std::size_t face = 0; face < soup.faces.size(); ++face) {
+    if (soup.faces[face].empty()) continue;
+    surfaces_m2[{soup.object[face], soup.material[face]}] +=
+        0.5 * glm::length(doubleAreaVector(soup.points, soup.faces[face]));
+  }
+  std::vector<long> weights(places, std::numeric_limits<long>::min());
+  for (std::size_t face = 0; face < soup.faces.size(); ++face) {
+    const double area_m2 = surfaces_m2[{soup.object[face], soup.material[face]}];
+    const long weight = std::lround(stepsOfE * std::log(std::max(area_m2, least_m2)));
+    for (const std::uint32_t corner : soup.faces[face]) {
+      long& most = weights[placeOf[corner]];
+      most = std::max(most, weight);
+    }
+  }
+  return weights;
+}
+
 }  // namespace
 
 Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts) {
-  std::vector<bool> used(soup.points.size(), false);
-  for (const std::uint32_t corner : soup.faces.corners) used[corner] = true;
   std::vector<glm::dvec3> onTheGrid(soup.points.size());
-  Loop order;
-  for (std::uint32_t i = 0; i < soup.points.size(); ++i) {
-    if (!used[i]) continue;
+  for (std::size_t i = 0; i < soup.points.size(); ++i)
     onTheGrid[i] = onGrid(soup.points[i], tolerances.grid_m);
-    order.push_back(i);
-  }
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return lexicographicallyLess(onTheGrid[a], onTheGrid[b]);
-  });
+  std::vector<glm::dvec3> places;
+  const std::vector<std::uint32_t> placeOf = distinctPlaces(soup, onTheGrid, places);
+  const std::vector<long> weights = weightsOf(soup, placeOf, places.size());
+  Loop order(places.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return weights[a] > weights[b]; });
 
-  Soup result;
   NearPoints near(tolerances.weld_m);
-  Loop renumbered(soup.points.size());
-  for (const std::uint32_t point : order) {
-    std::uint32_t kept = near.nearest(onTheGrid[point]);
-    if (kept == NearPoints::none) {
-      kept = static_cast<std::uint32_t>(result.points.size());
-      near.add(onTheGrid[point], kept);
-      result.points.push_back(onTheGrid[point]);
-    } else {
-      ++counts.pointsWelded;
-    }
-    renumbered[point] = kept;
+  Loop keptOf(places.size());
+  std::vector<bool> isKept(places.size(), false);
+  for (const std::uint32_t place : order) {
+    keptOf[place] = near.nearest(places[place]);
+    if (keptOf[place] != NearPoints::none) continue;
+    keptOf[place] = place;
+    isKept[place] = true;
+    near.add(places[place], place);
   }
+  Soup result;
+  Loop numberOf(places.size());
+  for (std::uint32_t place = 0; place < places.size(); ++place) {
+    if (!isKept[place]) continue;
+    numberOf[place] = static_cast<std::uint32_t>(result.points.size());
+    result.points.push_back(places[place]);
+  }
+  Loop renumbered(soup.points.size());
+  std::size_t used = 0;
+  for (std::uint32_t point = 0; point < soup.points.size(); ++point) {
+    if (placeOf[point] == NearPoints::none) continue;
+    renumbered[point] = numberOf[keptOf[placeOf[point]]];
+    ++used;
+  }
+  counts.pointsWelded += used - result.points.size();
   result.faces = soup.faces;
   result.displaced.resize(soup.faces.size());
   for (std::size_t face = 0; face < soup.faces.size(); ++face) {

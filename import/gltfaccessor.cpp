@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads glTF's accessors: counts, offsets and sizes are compared with the bytes that are there before any is
 // read.
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -50,6 +52,16 @@ double loadInteger(const char* data, bool normalized) {
   return normalized ? std::max(value / static_cast<double>(std::numeric_limits<Value>::max()), -1.0) : value;
 }
 
+/// The shortest decimal that rounds to the float: what was drawn before it was written in 32 bits, so that
+/// an OBJ of the same model gives the same points.
+double decimalOf(float value) {
+  std::array<char, 32> text;
+  const auto written = std::to_chars(text.data(), text.data() + text.size(), value);
+  double decimal = static_cast<double>(value);
+  std::from_chars(text.data(), written.ptr, decimal);
+  return decimal;
+}
+
 double loadNumber(const char* data, std::size_t type, bool normalized) {
   switch (type) {
     case kSignedByte:
@@ -63,7 +75,7 @@ double loadNumber(const char* data, std::size_t type, bool normalized) {
     case kInt:
       return loadInteger<std::uint32_t>(data, normalized);
     default:
-      return static_cast<double>(load<float>(data));
+      return decimalOf(load<float>(data));
   }
 }
 

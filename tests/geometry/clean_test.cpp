@@ -28,19 +28,6 @@ TEST(Clean, KeepsPointsFurtherApart) {
   EXPECT_EQ(model.pieces.size(), 2U);
 }
 
-TEST(Clean, FloatCoordinatesGiveTheBitsOfTheirDecimals) {
-  const Outline exact = {{0.1, 0.2, 3.003}, {7.777, 0.2, 3.003}, {7.777, 5.501, 3.003}, {0.1, 5.501, 3.003}};
-  Drawing decimal;
-  decimal.face(exact);
-  Drawing binary;
-  Outline rounded;
-  for (const glm::dvec3& point : exact) rounded.emplace_back(glm::vec3(point));
-  binary.face(rounded);
-  const CleanModel model = cleanScene(binary.scene);
-  EXPECT_TRUE(samePieces(cleanScene(decimal.scene), model));
-  EXPECT_EQ(model.pieces.points[0], exact[0]);
-}
-
 TEST(Clean, DropsDegenerateFacesAndCorners) {
   Drawing drawing;
   drawing.face({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});

@@ -37,6 +37,17 @@ TEST(Gltf, ReadsTheContainerAndTurnsYUp) {
   EXPECT_EQ(countOf(scene.diagnoses, "C121"), 1U);
 }
 
+// 32 bits hold 7.777 but for 2e-7: what was drawn is the shortest decimal that they stand for.
+TEST(Gltf, FloatsStandForTheirDecimals) {
+  const TempFolder folder;
+  std::string bytes = squareBytes();
+  const float drawn[3] = {7.777F, 0.1F, 3.003F};
+  std::memcpy(bytes.data(), drawn, sizeof drawn);
+  const Scene scene = readModel(folder.write("square.glb", glb(jsonOf(Parts()), bytes)), {});
+  ASSERT_EQ(scene.points.size(), 4U);
+  EXPECT_EQ(scene.points[0], glm::dvec3(7.777, -3.003, 0.1));
+}
+
 TEST(Gltf, FlipsTheWindingOfMirroredNodes) {
   Parts parts;
   parts.nodes = R"([{"children":[1],"scale":[-1,1,1]},{"mesh":0,"translation":[1,2,3]}])";

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Buildings drawn in other ways, and whether they are the same: rooms, panes and surfaces.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <sstream>
+
+#include "../import/tempfolder.hpp"
+#include "../scenes.hpp"
+
+namespace clerestory::drawn {
+
+/// Without its cages: their facets change with where they lie, within their tolerance.
+inline Scene withoutCages(Scene scene) {
+  scene.cages.clear();
+  return scene;
+}
+
+inline Scene read(const std::filesystem::path& file, const ModelOptions& options = {}) {
+  return withoutCages(readModel(file, options));
+}
+
+inline Scene moved(Scene scene, const std::function<glm::dvec3(const glm::dvec3&)>& map) {
+  for (glm::dvec3& point : scene.points) point = map(point);
+  return scene;
+}
+
+inline Scene turned(const Scene& scene, double angle_rad) {
+  const double c = std::cos(angle_rad);
+  const double s = std::sin(angle_rad);
+  return moved(scene,
+               [&](const glm::dvec3& p) { return glm::dvec3(c * p.x - s * p.y, s * p.x + c * p.y, p.z); });
+}
+
+inline Scene mirrored(const Scene& scene) {
+  return moved(scene, [](const glm::dvec3& p) { return glm::dvec3(-p.x, p.y, p.z); });
+}
+
+/// Every face looks the other way.
+inline Scene reversed(Scene scene) {
+  PolygonList faces;
+  for (std::size_t face = 0; face < scene.faces.size(); ++face) {
+    const auto corners = scene.faces[face];
+    faces.add(std::vector<std::uint32_t>(corners.rbegin(), corners.rend()));
+  }
+  scene.faces = std::move(faces);
+  return scene;
+}
+
+/// The scene's points and materials with other faces; `divide` adds what becomes of one.
+template <class Divide>
+Scene withFaces(const Scene& scene, const Divide& divide) {
+  Scene result = scene;
+  result.faces = PolygonList();
+  result.faceMaterial.clear();
+  result.faceObject.clear();
+  for (std::size_t face = 0; face < scene.faces.size(); ++face) {
+    divide(result, scene.faces[face], [&](const std::vector<std::uint32_t>& corners) {
+      result.faces.add(corners);
+      result.faceMaterial.push_back(scene.faceMaterial[face]);
+      result.faceObject.push_back(scene.faceObject[face]);
+    });
+  }
+  return result;
+}
+
+/// Rectangles come in two, across the middles of two sides: each with points of its own.
+inline Scene divided(const Scene& scene) {
+  return withFaces(scene, [](Scene& result, std::span<const std::uint32_t> c, const auto& add) {
+    const auto at = [&](std::size_t i) { return result.points[c[i]]; };
+    const bool isRectangle =
+        c.size() == 4 && glm::length(at(0) - at(1) + at(2) - at(3)) < 1e-9 * glm::length(at(2) - at(0));
+    if (!isRectangle) {
+      add({c.begin(), c.end()});
+      return;
+    }
+    const auto middle = static_cast<std::uint32_t>(result.points.size());
+    const glm::dvec3 first = 0.5 * (at(0) + at(1));
+    const glm::dvec3 second = 0.5 * (at(2) + at(3));
+    result.points.push_back(first);
+    result.points.push_back(second);
+    add({c[0], middle, middle + 1, c[3]});
+    add({middle, c[1], c[2], middle + 1});
+  });
+}
+
+/// Triangles come in `parts` x `parts`, each with points of its own, in 32 bits.
+inline Scene tessellated(const Scene& scene, int parts) {
+  return withFaces(scene, [&](Scene& result, std::span<const std::uint32_t> c, const auto& add) {
+    const glm::dvec3 origin = result.points[c[0]];
+    const glm::dvec3 u = (result.points[c[1]] - origin) / static_cast<double>(parts);
+    const glm::dvec3 v = (result.points[c[2]] - origin) / static_cast<double>(parts);
+    const auto point = [&](int i, int j) {
+      result.points.emplace_back(glm::vec3(origin + static_cast<double>(i) * u + static_cast<double>(j) * v));
+      return static_cast<std::uint32_t>(result.points.size() - 1);
+    };
+    for (int i = 0; i < parts; ++i) {
+      for (int j = 0; i + j < parts; ++j) {
+        add({point(i, j), point(i + 1, j), point(i, j + 1)});
+        if (i + j + 1 < parts) add({point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)});
+      }
+    }
+  });
+}
+
+/// An OBJ with its points in another unit.
+inline Scene inUnit(const std::filesystem::path& file, const std::string& unit, double perMetre) {
+  std::ifstream stream(file);
+  std::string text;
+  for (std::string line; std::getline(stream, line);) {
+    if (line.starts_with("v ")) {
+      std::istringstream numbers(line.substr(2));
+      line = "v";
+      for (double value = 0.0; numbers >> value;) {
+        char number[40];
+        line += ' ' + std::string(number, std::to_chars(number, number + 40, value * perMetre).ptr);
+      }
+    }
+    text += line + '\n';
+  }
+  const TempFolder folder;
+  for (const auto& other : std::filesystem::directory_iterator(file.parent_path())) {
+    if (other.path().extension() == ".mtl")
+      std::filesystem::copy(other.path(), folder.path() / other.path().filename());
+  }
+  ModelOptions options;
+  options.units = unit;
+  options.upAxis = "z";
+  return read(folder.write("model.obj", text), options);
+}
+
+/// By object and material. [m²]
+using Surfaces = std::map<std::pair<std::string, std::string>, double>;
+
+inline Surfaces surfacesOf(const CleanModel& model) {
+  Surfaces surfaces_m2;
+  for (std::size_t piece = 0; piece < model.pieces.size(); ++piece) {
+    const Surface& surface = model.surfaces[model.pieces.surface[piece]];
+    surfaces_m2[{surface.name, model.materials[surface.material].name}] += model.pieces.area_m2[piece];
+  }
+  return surfaces_m2;
+}
+
+/// A room: area of its floor, number and area of its panes.
+using RoomFigures = std::array<double, 3>;
+
+inline std::vector<RoomFigures> roomsOf(const Building& building) {
+  std::vector<RoomFigures> rooms;
+  for (const Room& room : building.rooms) rooms.push_back({room.floorArea_m2, 0.0, 0.0});
+  for (const Portal& portal : building.portals) {
+    RoomFigures& room = rooms.at(static_cast<std::size_t>(portal.room));
+    room[1] += 1.0;
+    room[2] += building.model.pieces.area_m2[portal.piece];
+  }
+  std::sort(rooms.begin(), rooms.end(), [](const RoomFigures& a, const RoomFigures& b) {
+    return std::lround(1e4 * a[0]) != std::lround(1e4 * b[0]) ? a[0] < b[0] : a[2] < b[2];
+  });
+  return rooms;
+}
+
+/// Areas alike within 1e-6. Where corners of two things lie within a millimetre of each other, and nothing
+/// but their places tells which gives way, one surface may differ by that.
+inline void expectSameSurfaces(const Surfaces& found_m2, const Surfaces& expected_m2, double tolerance) {
+  ASSERT_EQ(found_m2.size(), expected_m2.size());
+  std::size_t others = 0;
+  for (const auto& [surface, area_m2] : expected_m2) {
+    ASSERT_TRUE(found_m2.contains(surface)) << surface.first;
+    const double error = std::abs(found_m2.at(surface) / area_m2 - 1.0);
+    EXPECT_LT(error, 1e-3) << surface.first << ' ' << surface.second;
+    others += error > tolerance ? 1 : 0;
+  }
+  EXPECT_LE(others, 1U);
+}
+
+inline void expectSame(const Scene& other, const Building& expected) {
+  const Building found = buildingOf(other);
+  expectSameSurfaces(surfacesOf(found.model), surfacesOf(expected.model), 1e-6);
+  const std::vector<RoomFigures> rooms = roomsOf(found);
+  const std::vector<RoomFigures> expectedRooms = roomsOf(expected);
+  ASSERT_EQ(rooms.size(), expectedRooms.size());
+  for (std::size_t room = 0; room < rooms.size(); ++room) {
+    EXPECT_NEAR(rooms[room][0] / expectedRooms[room][0], 1.0, 1e-6);
+    EXPECT_EQ(rooms[room][1], expectedRooms[room][1]);
+    EXPECT_NEAR(rooms[room][2], expectedRooms[room][2], 1e-6 * expectedRooms[room][2]);
+  }
+}
+
+inline void expectSameHoweverDrawn(const std::filesystem::path& file) {
+  const Scene scene = read(file);
+  const Building expected = buildingOf(scene);
+  ASSERT_FALSE(expected.rooms.empty());
+  ASSERT_FALSE(expected.portals.empty());
+  const std::vector<std::pair<std::string, Scene>> others = {{"turned by 0.3 rad", turned(scene, 0.3)},
+                                                             {"mirrored", mirrored(scene)},
+                                                             {"in millimetres", inUnit(file, "mm", 1000.0)},
+                                                             {"in inches", inUnit(file, "in", 1.0 / 0.0254)},
+                                                             {"reversed", reversed(scene)},
+                                                             {"shuffled", shuffled(scene, 3)},
+                                                             {"divided", divided(scene)}};
+  for (const auto& [how, other] : others) {
+    SCOPED_TRACE(how);
+    expectSame(other, expected);
+  }
+}
+
+}  // namespace clerestory::drawn
