@@ -9,6 +9,7 @@
   docs/make_benchmarks.py build/release growth         finer furniture, the same light
   docs/make_benchmarks.py build/release columns        what more columns cost
   docs/make_benchmarks.py build/release importance     importance where few figures are asked for
+  docs/make_benchmarks.py build/release versus         against plain radiosity
 
 The figures for the text are printed as Markdown. With --draw-only the tables are taken as they are. Scenes and
 what is kept between runs lie in BUILD/bench. Needs nothing but Python 3.9.
@@ -315,6 +316,34 @@ def show_importance():
                  "ratio"], rows)
 
 
+def measure_versus(build, folder):
+    run([build / "bench_versus", "--folder", folder, "--table", "versus.csv", "--seeds", "2", "--longest", "0.5",
+         *(DOCS.parent / "tests" / "data" / "reference" / room / f"{room}.obj" for room in ("refoffice", "furnished"))])
+    return ["versus.csv"]
+
+
+def show_versus():
+    """The least time of any setting that comes to an error, and of those that all dearer ones keep to."""
+    rows = []
+    every = rows_of("versus.csv")
+    for scene in dict.fromkeys(row["scene"] for row in every):
+        for error in (5, 2, 1):
+            line = [scene, f"{error} %"]
+            for method in ("rival", "shooting"):
+                runs = sorted((float(row["seconds"]), float(row["error_pct"])) for row in every
+                              if (row["scene"], row["method"]) == (scene, method))
+                line.append(next((f"{seconds:.4f}" for seconds, own in runs if own <= error), "–"))
+                kept = len(runs)
+                while kept > 0 and runs[kept - 1][1] <= error:
+                    kept -= 1
+                line.append(f"{runs[kept][0]:.4f}" if kept < len(runs) else "–")
+            rows.append(line)
+        chart("versus.csv", f"versus-{scene}.svg", "-x", "seconds", "-y", "error_pct", "--series", "method",
+              "--filter", f"scene={scene}", "--front", "--title", f"Means of surfaces: {scene}", "--x-label", "CPU s",
+              "--y-label", "error of surfaces over 0.1 m², RMS over area, %")
+    print_table(["scene", "to", "rival, s", "all dearer ones too", "shooting, s", "all dearer ones too"], rows)
+
+
 BENCHMARKS = {
     "paper": (measure_paper, show_paper),
     "convergence": (measure_convergence, show_convergence),
@@ -322,6 +351,7 @@ BENCHMARKS = {
     "growth": (measure_growth, show_growth),
     "columns": (measure_columns, show_columns),
     "importance": (measure_importance, show_importance),
+    "versus": (measure_versus, show_versus),
 }
 
 
