@@ -25,7 +25,7 @@ struct Tolerances {
   double displacedAngle_rad = 0.02;  ///< at most, where the weld has moved a corner of the face
   double collinear_m = 2e-5;         ///< a corner nearer to the line of its neighbours is no corner
   double degenerateArea_m2 = 1e-8;   ///< smaller faces are dropped
-  double paneGapLow_m = 3e-3;        ///< between two sheets of one pane unit
+  double paneGapLow_m = 2.5e-3;      ///< between two sheets of one pane unit
   double paneGapHigh_m = 40e-3;      ///< between two sheets of one pane unit
 };
 

@@ -47,11 +47,11 @@ TEST(FurtherModels, FurnishedStudioHasFourRooms) {
 }
 
 TEST(FurtherModels, ApartmentHasSevenRooms) {
-  for (const char* file : {"2BedroomApartment_shell.obj", "2BedroomApartment.obj"}) {
-    SCOPED_TRACE(file);
-    expectRooms(buildingOfModel(std::string("room-sh3d-2BedroomApartment/") + file),
-                {1.11, 4.83, 9.77, 9.98, 10.61, 10.91, 16.02}, 10);
-  }
+  expectRooms(buildingOfModel("room-sh3d-2BedroomApartment/2BedroomApartment_shell.obj"),
+              {1.11, 4.83, 9.77, 9.98, 10.61, 10.91, 16.02}, 10);
+  // Furnished, the corridor holds 1.1 m² within a hollow wall, which its air reaches by a lamp's glass.
+  expectRooms(buildingOfModel("room-sh3d-2BedroomApartment/2BedroomApartment.obj"),
+              {1.11, 4.83, 9.77, 10.61, 10.91, 11.16, 16.02}, 10);
 }
 
 TEST(FurtherModels, HoneybeeHouseAndOffice) {

@@ -10,13 +10,15 @@ namespace {
 using namespace drawn;
 
 TEST(Panes, SolidPaneBecomesOneSheet) {
-  Drawing drawing;
-  for (const Outline& side : box({0, 0, 0}, {1.2, 0.02, 1.5})) drawing.fan(side, 0, 1);
-  const CleanModel model = cleanScene(drawing.scene);
-  ASSERT_EQ(model.pieces.size(), 1U);
-  EXPECT_NEAR(model.pieces.area_m2[0], 1.8, 1e-12);
-  EXPECT_EQ(model.counts.paneSheetsDropped, 5U);
-  EXPECT_EQ(model.pieces.points[0].y, 0.0);
+  for (const double thickness_m : {0.0025, 0.02}) {  // a cabinet's or a door's, and a unit
+    Drawing drawing;
+    for (const Outline& side : box({0, 0, 0}, {1.2, thickness_m, 1.5})) drawing.fan(side, 0, 1);
+    const CleanModel model = cleanScene(drawing.scene);
+    ASSERT_EQ(model.pieces.size(), 1U);
+    EXPECT_NEAR(model.pieces.area_m2[0], 1.8, 1e-12);
+    EXPECT_EQ(model.counts.paneSheetsDropped, 5U);
+    EXPECT_EQ(model.pieces.points[0].y, 0.0);
+  }
 }
 
 TEST(Panes, FourSheetsBecomeOne) {
