@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sensor grids: points over a room's floor, within an outline, or from a list.
+// Sensor grids: points over a room's floor, within an outline, on surfaces, or from a list.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <optional>
+#include <tuple>
 
 #include <geometry/sampling.hpp>
 
@@ -47,6 +49,36 @@ double distanceToOutline(const glm::dvec2& point, const std::vector<glm::dvec2>&
     least = std::min(least, glm::length(point - outline[j] - t * edge));
   }
   return least;
+}
+
+/// Share of rays from a point that end in a domain's air.
+double shareInAir(const Building& building, const RayScene& rays, const glm::dvec3& point,
+                  std::int32_t domain) {
+  constexpr std::uint32_t count = 16;
+  const Sequence sequence(0xa17);
+  const glm::vec3 from(point - rays.origin());
+  const bool isOpen = building.domains[static_cast<std::size_t>(domain)].open;
+  std::uint32_t inAir = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const float z = 2.0F * sequence(i, 0) - 1.0F;
+    const float angle = 2.0F * std::numbers::pi_v<float> * sequence(i, 1);
+    const float radius = std::sqrt(std::max(0.0F, 1.0F - z * z));
+    const auto hit = rays.nearest(from, {radius * std::cos(angle), radius * std::sin(angle), z},
+                                  RayScene::Barrier::opaqueAndGlass);
+    if (hit ? building.sideDomain[hit.side()] == domain : isOpen) ++inAir;
+  }
+  return static_cast<double>(inAir) / count;
+}
+
+/// A room where all points see its air, else none: each sensor is then lit by the air that it stands in.
+std::int32_t roomOfAll(const Building& building, const RayScene& rays, std::int32_t room,
+                       const std::vector<glm::dvec3>& points) {
+  if (room < 0) return room;
+  const std::int32_t domain = building.rooms[static_cast<std::size_t>(room)].domain;
+  const bool isIn = std::all_of(points.begin(), points.end(), [&](const glm::dvec3& point) {
+    return shareInAir(building, rays, point, domain) > 0.0;
+  });
+  return isIn ? room : -1;
 }
 
 /// A piece of a room's floor in plan.
@@ -139,7 +171,7 @@ SensorGrid gridOverRoom(const Building& building, const GridSettings& settings, 
   return grid;
 }
 
-SensorGrid gridWithinOutline(const Building& building, const GridSettings& settings) {
+SensorGrid gridWithinOutline(const Building& building, const GridSettings& settings, const RayScene& rays) {
   Rectangle bounds;
   for (const glm::dvec2& corner : settings.polygon_m) bounds.add(corner);
   SensorGrid grid{settings.name, -1, {}, {}, settings.spacing_m};
@@ -150,18 +182,107 @@ SensorGrid gridWithinOutline(const Building& building, const GridSettings& setti
     if (settings.inset_m > 0.0 && distanceToOutline(plan, settings.polygon_m) < settings.inset_m) continue;
     grid.points.emplace_back(plan, floor_m + settings.height_m);
   }
+  grid.room = roomOfAll(building, rays, grid.room, grid.points);
   grid.normals.assign(grid.points.size(), {0, 0, 1});
   return grid;
 }
 
-SensorGrid gridOfPoints(const Building& building, const GridSettings& settings) {
+/// A plane with axes: the first level, the second upwards; on a level plane they are +x and ±y.
+struct SurfacePlane {
+  glm::dvec3 origin, along, up, normal;
+
+  SurfacePlane(const glm::dvec3& point, const glm::dvec3& facing) : origin(point), normal(facing) {
+    const glm::dvec3 level(-facing.y, facing.x, 0.0);
+    along = glm::length(level) > 1e-3 ? glm::normalize(level) : glm::dvec3(1.0, 0.0, 0.0);
+    up = glm::cross(normal, along);
+  }
+  [[nodiscard]] glm::dvec2 flat(const glm::dvec3& point) const {
+    return {glm::dot(point - origin, along), glm::dot(point - origin, up)};
+  }
+  [[nodiscard]] glm::dvec3 at(const glm::dvec2& point, double height_m) const {
+    return origin + point.x * along + point.y * up + height_m * normal;
+  }
+};
+
+/// Sides of one planar polygon in one room.
+using FaceKey = std::tuple<std::int32_t, std::uint32_t, std::uint32_t>;  // room, polygon, side of it
+using Faces = std::map<FaceKey, std::vector<std::uint32_t>>;             // pieces
+
+/// The faces of the surfaces that a grid names: those in rooms, or outdoors where none is in a room.
+Faces facesOf(const Building& building, const std::string& glob) {
+  const Pieces& pieces = building.model.pieces;
+  Faces faces;
+  for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
+    const std::uint32_t piece = side / 2;
+    if (building.sideDomain[side] < 0) continue;
+    if (!globMatches(glob, building.model.surfaces[pieces.surface[piece]].name)) continue;
+    faces[{building.sideRoom[side], pieces.polygon[piece], side % 2}].push_back(piece);
+  }
+  if (!faces.empty() && std::get<0>(faces.rbegin()->first) >= 0)
+    std::erase_if(faces, [](const auto& face) { return std::get<0>(face.first) < 0; });
+  return faces;
+}
+
+void addPointsOnFace(const Building& building, const GridSettings& settings, const RayScene& rays,
+                     const FaceKey& key, const std::vector<std::uint32_t>& faces, SensorGrid& grid) {
+  constexpr double offLeast_m = 0.001;
+  const Pieces& pieces = building.model.pieces;
+  const std::uint32_t parity = std::get<2>(key);
+  const auto corner = [&](std::uint32_t index) { return pieces.points[index]; };
+  const glm::dvec3 normal = parity == 0 ? pieces.normal[faces.front()] : -pieces.normal[faces.front()];
+  const SurfacePlane plane(corner(pieces.polygons[faces.front()][0]), normal);
+  const std::int32_t domain = building.sideDomain[2 * faces.front() + parity];
+  std::vector<std::vector<glm::dvec2>> outlines;
+  Rectangle bounds;
+  for (const std::uint32_t piece : faces) {
+    std::vector<glm::dvec2>& outline = outlines.emplace_back();
+    for (const std::uint32_t index : pieces.polygons[piece]) {
+      outline.push_back(plane.flat(corner(index)));
+      bounds.add(outline.back());
+    }
+  }
+  bounds.low += settings.inset_m;
+  bounds.high -= settings.inset_m;
+  if (bounds.low.x >= bounds.high.x || bounds.low.y >= bounds.high.y) return;
+  for (const glm::dvec2& flat : pointsOf(building, settings, bounds)) {
+    const bool isOn = std::any_of(outlines.begin(), outlines.end(),
+                                  [&](const auto& outline) { return isWithin(flat, outline); });
+    const glm::dvec3 point = plane.at(flat, std::max(settings.height_m, offLeast_m));
+    if (!isOn || !isInAir(building, rays, point, domain)) continue;
+    grid.points.push_back(point);
+    grid.normals.push_back(normal);
+  }
+}
+
+/// A grid for each room that the surfaces lie in.
+std::vector<SensorGrid> gridsOnSurfaces(const Building& building, const GridSettings& settings,
+                                        const RayScene& rays) {
+  const Faces faces = facesOf(building, *settings.surface);
+  if (faces.empty()) {
+    throw InputError("the grid \"" + settings.name +
+                     "\" matches no surface that light reaches (asked for: \"" + *settings.surface +
+                     "\"); surfaces.csv of a report lists them");
+  }
+  std::vector<SensorGrid> grids;
+  for (const auto& [key, pieces] : faces) {
+    if (grids.empty() || grids.back().room != std::get<0>(key))
+      grids.push_back({settings.name, std::get<0>(key), {}, {}, settings.spacing_m});
+    addPointsOnFace(building, settings, rays, key, pieces, grids.back());
+  }
+  return grids;
+}
+
+SensorGrid gridOfPoints(const Building& building, const GridSettings& settings, const RayScene& rays) {
   expectRoomFor(building, settings.name, static_cast<double>(settings.points.size()));
   SensorGrid grid{settings.name, -1, {}, {}, settings.spacing_m};
   for (const auto& row : settings.points) {
     grid.points.emplace_back(row[0], row[1], row[2]);
     grid.normals.push_back(glm::normalize(glm::dvec3(row[3], row[4], row[5])));
   }
-  if (!grid.points.empty()) grid.room = roomBelow(building, grid.points.front(), grid.points.front().z);
+  if (!grid.points.empty()) {
+    grid.room = roomOfAll(building, rays, roomBelow(building, grid.points.front(), grid.points.front().z),
+                          grid.points);
+  }
   return grid;
 }
 
@@ -176,30 +297,25 @@ void addGrid(Building& building, SensorGrid grid) {
 }  // namespace
 
 bool isInAir(const Building& building, const RayScene& rays, const glm::dvec3& point, std::int32_t domain) {
-  constexpr std::uint32_t count = 16;
-  const Sequence sequence(0xa17);
-  const glm::vec3 from(point - rays.origin());
-  std::uint32_t inAir = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const float z = 2.0F * sequence(i, 0) - 1.0F;
-    const float angle = 2.0F * std::numbers::pi_v<float> * sequence(i, 1);
-    const float radius = std::sqrt(std::max(0.0F, 1.0F - z * z));
-    const auto hit = rays.nearest(from, {radius * std::cos(angle), radius * std::sin(angle), z},
-                                  RayScene::Barrier::opaqueAndGlass);
-    const bool isOpen = building.domains[static_cast<std::size_t>(domain)].open;
-    if (hit ? building.sideDomain[hit.side()] == domain : isOpen) ++inAir;
-  }
-  return 4 * inAir >= 3 * count;
+  return shareInAir(building, rays, point, domain) >= 0.75;
 }
 
 void layGrids(Building& building, const Study& study, const RayScene& rays) {
   for (const GridSettings& settings : study.grids) {
     if (!settings.points.empty()) {
-      addGrid(building, gridOfPoints(building, settings));
+      addGrid(building, gridOfPoints(building, settings, rays));
       continue;
     }
     if (!settings.polygon_m.empty()) {
-      addGrid(building, gridWithinOutline(building, settings));
+      addGrid(building, gridWithinOutline(building, settings, rays));
+      continue;
+    }
+    if (settings.surface) {
+      std::vector<SensorGrid> grids = gridsOnSurfaces(building, settings, rays);
+      for (SensorGrid& grid : grids) {
+        if (grids.size() > 1) grid.name += " " + building.rooms.at(static_cast<std::size_t>(grid.room)).name;
+        addGrid(building, std::move(grid));
+      }
       continue;
     }
     std::vector<std::int32_t> matching;

@@ -183,6 +183,17 @@ void readSky(const TomlSection& file, Study& study) {
   }
 }
 
+void readSunlight(const TomlSection& file, Study& study) {
+  const auto section = file.section("sunlight");
+  if (!section) {
+    return;
+  }
+  section->allowOnly({"date", "altitude_min"});
+  study.sunlight.date = section->date("date").value_or(study.sunlight.date);
+  study.sunlight.leastAltitude_deg =
+      section->number("altitude_min", {0, 90}).value_or(study.sunlight.leastAltitude_deg);
+}
+
 void readGround(const TomlSection& file, Study& study) {
   const auto section = file.section("ground");
   if (!section) {
@@ -239,16 +250,18 @@ std::string nameOf(const TomlSection& section, const std::string& kind, std::set
 GridSettings readGrid(const TomlSection& section, const std::filesystem::path& folder,
                       std::set<std::string>& taken) {
   section.allowOnly({"name", "room", "polygon", "surface", "points", "height", "spacing", "inset"});
-  section.refuse({"surface"});
   GridSettings grid;
   grid.name = nameOf(section, "Grid", taken);
   grid.room = section.text("room");
   grid.polygon_m = section.polygon("polygon");
+  grid.surface = section.text("surface");
   grid.pointsFile = section.text("points").value_or("");
-  if (section.has("room") + section.has("polygon") + section.has("points") > 1) {
-    section.fail("name", "states more than one of room, polygon and points; write a [[grid]] for each");
+  if (section.has("room") + section.has("polygon") + section.has("surface") + section.has("points") > 1) {
+    section.fail("name",
+                 "states more than one of room, polygon, surface and points; write a [[grid]] for each");
   }
-  grid.height_m = section.number("height", {-100, 1000}).value_or(grid.height_m);
+  grid.height_m = section.number("height", {grid.surface ? 0.0 : -100.0, 1000})
+                      .value_or(grid.surface ? 0.0 : grid.height_m);
   grid.spacing_m = section.number("spacing", {0.001, 1000}).value_or(grid.spacing_m);
   grid.inset_m = section.number("inset", {0, 1000}).value_or(grid.inset_m);
   if (section.has("points")) {
@@ -407,14 +420,15 @@ Study readStudy(const std::filesystem::path& file) {
   const std::string name = file.string();
   const toml::table table = parseToml(plainText(bytes, name), name);
   const TomlSection root(table, "", name);
-  root.allowOnly({"model", "site", "materials", "sky", "ground", "glazing", "opening", "luminaire", "grid",
-                  "view", "accuracy", "report"});
+  root.allowOnly({"model", "site", "materials", "sky", "sunlight", "ground", "glazing", "opening",
+                  "luminaire", "grid", "view", "accuracy", "report"});
   const std::filesystem::path folder = file.parent_path();
   Study study;
   readModelSection(root, folder, study);
   readSite(root, study);
   readMaterials(root, study);
   readSky(root, study);
+  readSunlight(root, study);
   readGround(root, study);
   readGlazing(root, study);
   readOpenings(root, study);

@@ -10,6 +10,13 @@
 #include "units.hpp"
 
 namespace clerestory {
+namespace {
+
+std::string two(int value) {
+  return (value < 10 ? "0" : "") + std::to_string(value);
+}
+
+}  // namespace
 
 std::optional<int> skyTypeNumber(const std::string& name) {
   if (name == "cie-overcast") {
@@ -65,18 +72,20 @@ double presetTransmittance(GlassKind kind) {
   return kind == GlassKind::cie171Clear ? 0.8788 : 0.0;
 }
 
+std::string dateText(const ClockTime& time) {
+  const std::string year = std::to_string(time.year);
+  return std::string(4 - std::min<std::size_t>(year.size(), 4), '0') + year + "-" + two(time.month) + "-" +
+         two(time.day);
+}
+
 std::string clockTimeText(const ClockTime& time) {
-  const auto two = [](int value) { return (value < 10 ? "0" : "") + std::to_string(value); };
   const auto inHours = [&](double hours) {
     const auto seconds = std::lround(hours * 3600.0);
     const int minutes = static_cast<int>(seconds / 60);
     return std::array{minutes / 60, minutes % 60, static_cast<int>(seconds % 60)};
   };
   const auto [hour, minute, second] = inHours(time.hour_h);
-  const std::string year = std::to_string(time.year);
-  std::string text = std::string(4 - std::min<std::size_t>(year.size(), 4), '0') + year + "-" +
-                     two(time.month) + "-" + two(time.day) + "T" + two(hour) + ":" + two(minute) + ":" +
-                     two(second);
+  std::string text = dateText(time) + "T" + two(hour) + ":" + two(minute) + ":" + two(second);
   if (time.zone_h) {
     const auto offset = inHours(std::abs(*time.zone_h));
     text += (*time.zone_h < 0.0 ? "-" : "+") + two(offset[0]) + ":" + two(offset[1]);

@@ -120,6 +120,9 @@ void writeSky(const Study& study, Writer& out) {
     out.line("sun", "{ altitude = " + numberText(study.sky.sun_deg->x) +
                         ", azimuth = " + numberText(study.sky.sun_deg->y) + " }");
   }
+  out.section("[sunlight]");
+  out.line("date", dateText(study.sunlight.date));
+  out.line("altitude_min", study.sunlight.leastAltitude_deg);
   out.section("[ground]");
   out.line("reflectance", study.groundReflectance);
   out.line("model", inQuotes(study.groundIsShaded ? "shaded" : "uniform"));
@@ -158,6 +161,9 @@ void writeGrid(const GridSettings& grid, Writer& out) {
       corners += (corners.empty() ? "[" : ", [") + numberText(corner.x) + ", " + numberText(corner.y) + "]";
     }
     out.line("polygon", "[" + corners + "]");
+  }
+  if (grid.surface) {
+    out.line("surface", inQuotes(*grid.surface));
   }
   if (!grid.pointsFile.empty()) {
     out.line("points", inQuotes(grid.pointsFile));

@@ -213,6 +213,23 @@ std::vector<glm::dvec3> TomlSection::outline(const char* key) const {
   return corners;
 }
 
+std::optional<ClockTime> TomlSection::date(const char* key) const {
+  const toml::node* node = table_->get(key);
+  if (node == nullptr) {
+    return std::nullopt;
+  }
+  const auto value = node->value<toml::date>();
+  if (!value) {
+    failAtNode(*node, std::string(key) + " has to be a date, without quotes: 2026-03-21");
+  }
+  ClockTime time;
+  time.year = value->year;
+  time.month = value->month;
+  time.day = value->day;
+  expectKnownYear(*node, key, time.year);
+  return time;
+}
+
 std::optional<ClockTime> TomlSection::time(const char* key) const {
   const toml::node* node = table_->get(key);
   if (node == nullptr) {
@@ -230,12 +247,16 @@ std::optional<ClockTime> TomlSection::time(const char* key) const {
   if (value->offset) {
     time.zone_h = value->offset->minutes / 60.0;
   }
-  if (time.year < 1950 || time.year > 2100) {
-    failAtNode(*node, std::string(key) +
-                          " lies outside the years 1950 to 2100, for which the sun's place is "
-                          "known well enough");
-  }
+  expectKnownYear(*node, key, time.year);
   return time;
+}
+
+void TomlSection::expectKnownYear(const toml::node& node, const char* key, int year) const {
+  if (year < 1950 || year > 2100) {
+    failAtNode(node, std::string(key) +
+                         " lies outside the years 1950 to 2100, for which the sun's place is "
+                         "known well enough");
+  }
 }
 
 std::vector<std::string> TomlSection::texts(const char* key) const {

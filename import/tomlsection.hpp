@@ -53,6 +53,7 @@ class TomlSection {
   [[nodiscard]] std::optional<glm::dvec2> plan(const char* key) const;                   ///< [x, y]
   [[nodiscard]] std::vector<glm::dvec2> polygon(const char* key) const;                  ///< [[x, y], …]
   [[nodiscard]] std::vector<glm::dvec3> outline(const char* key) const;                  ///< [[x, y, z], …]
+  [[nodiscard]] std::optional<ClockTime> date(const char* key) const;                    ///< at noon
   [[nodiscard]] std::optional<ClockTime> time(const char* key) const;  ///< date and time, a zone if stated
   [[nodiscard]] std::vector<std::string> texts(const char* key) const;
 
@@ -67,6 +68,7 @@ class TomlSection {
   [[noreturn]] void fail(std::string_view key, const std::string& message) const;
 
  private:
+  void expectKnownYear(const toml::node& node, const char* key, int year) const;
   [[noreturn]] void failAtNode(const toml::node& node, const std::string& message) const;
   [[nodiscard]] double numberOf(const toml::node& node, std::string_view key, const Range& range) const;
   [[nodiscard]] std::vector<double> numbersOf(const toml::node& node, std::string_view key, std::size_t count,

@@ -166,9 +166,10 @@ Json rooms(const ReportInput& input) {
     if (r < input.solution.rooms.size()) {
       entry["average_daylight_factor_formula_pct"] =
           number(input.solution.rooms[r].averageDaylightFactor_pct);
-      entry["sunlight_21_march_h"] = number(input.solution.rooms[r].sunlight_h);
+      entry["sunlight_date"] = dateText(input.study.sunlight.date);
+      entry["sunlight_h"] = number(input.solution.rooms[r].sunlight_h);
       if (isAsked(input.study, "en17037"))
-        entry["sunlight_level_en17037"] = sunlightLevel(input.solution.rooms[r].sunlight_h);
+        entry["sunlight_level_en17037"] = sunlightLevel(input.study, input.solution.rooms[r].sunlight_h);
     }
     entry["grids"] = gridsJson(input, static_cast<std::int32_t>(r));
     list.push_back(entry);

@@ -81,7 +81,9 @@ std::optional<LeedHour> leedHourOf(const GridValues& grid, const Study& study) {
   return hour;
 }
 
-std::string sunlightLevel(double hours) {
+std::string sunlightLevel(const Study& study, double hours) {
+  const ClockTime& date = study.sunlight.date;
+  if (date.month != 2 && (date.month != 3 || date.day > 21)) return "not judged";
   if (hours >= 4.0) return "high";
   if (hours >= 3.0) return "medium";
   return hours >= 1.5 ? "minimum" : "none";
@@ -111,9 +113,12 @@ std::string roomChecksHtml(const ReportInput& input, std::size_t room) {
     }
   }
   if (isAsked(study, "en17037")) {
-    const std::string level = sunlightLevel(value.sunlight_h);
-    rows.push_back({"EN 17037, exposure to sunlight on 21 March", fixedNumber(value.sunlight_h, 1) + " h",
-                    verdictHtml(level != "none", level == "none" ? "not met" : "met, " + level)});
+    const std::string level = sunlightLevel(study, value.sunlight_h);
+    rows.push_back({"EN 17037, exposure to sunlight on " + dateText(study.sunlight.date),
+                    fixedNumber(value.sunlight_h, 1) + " h",
+                    level == "not judged"
+                        ? "asked for a day from 1 February to 21 March"
+                        : verdictHtml(level != "none", level == "none" ? "not met" : "met, " + level)});
   }
   if (rows.empty()) return {};
   return tableHtml("Checks", {{"Check", "", false}, {"Computed", "", false}, {"", "", false}}, rows);

@@ -28,9 +28,9 @@ struct LeedHour {
 std::string whyNoLeedHour(const Study& study);
 std::optional<LeedHour> leedHourOf(const GridValues& grid, const Study& study);
 
-/// EN 17037's level for hours of sunlight: "minimum" from 1.5 h, "medium" from 3 h, "high" from 4 h; or
-/// "none".
-std::string sunlightLevel(double hours);
+/// EN 17037's level for hours of sunlight on a study's day: "minimum" from 1.5 h, "medium" from 3 h, "high"
+/// from 4 h; or "none". The norm takes a day from 1 February to 21 March: "not judged" on others.
+std::string sunlightLevel(const Study& study, double hours);
 
 /// A room's checks for the page: the average daylight factor by formula beside the computed one, hours of
 /// sunlight, LEED where it is asked for.

@@ -114,7 +114,7 @@ std::string roomsCsv(const ReportInput& input) {
       "lx,"
       "uniformity,daylight_factor_mean_pct,daylight_factor_median_pct,daylight_factor_min_pct,daylight_"
       "factor_above_2_"
-      "pct,illuminance_300_3000_pct,average_daylight_factor_formula_pct,sunlight_21_march_h\r\n";
+      "pct,illuminance_300_3000_pct,average_daylight_factor_formula_pct,sunlight_h\r\n";
   const auto rooms = static_cast<std::int32_t>(input.building.rooms.size());
   for (std::int32_t room = 0; room < rooms; ++room) {
     const std::vector<std::size_t> grids = gridsOfRoom(input.building, room);

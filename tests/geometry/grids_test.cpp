@@ -2,6 +2,9 @@
 // Where the sensors of a grid stand: centred over rooms, within outlines, as listed, and clear of furniture.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <set>
+
 #include "../import/tempfolder.hpp"
 #include "../scenes.hpp"
 
@@ -183,6 +186,64 @@ TEST(Grids, TooManySensorsAreRefusedBeforeTheyAreMade) {
     for (const char* word : {"Desks", "million sensors", "spacing"})
       EXPECT_TRUE(contains(message, word)) << message;
   }
+}
+
+// A wall of 4.1 x 2.8 m that faces +y inside: points centred on it, a millimetre off it, looking into the
+// room; the outer side of the same sheet has none.
+TEST(Grids, LieOnSurfacesAndLookIntoTheRoom) {
+  Drawing drawing;
+  addBox(drawing, {10.0, 20.0, 1.0}, {14.1, 23.0, 3.8}, plaster, 0, {2});
+  drawing.face(upright(10.0, 1.0, 14.1, 3.8, 20.0), plaster, addObject(drawing, "South wall"));
+  GridSettings settings = roomGrid(0.5);
+  settings.surface = "south*";
+  settings.height_m = 0.0;
+  const SensorGrid grid = laid(drawing, settings);
+  ASSERT_EQ(grid.points.size(), 8U * 5U);
+  EXPECT_EQ(grid.room, 0);
+  std::set<double> columns, rows;
+  for (std::size_t i = 0; i < grid.points.size(); ++i) {
+    EXPECT_NEAR(grid.points[i].y, 20.001, exact);
+    EXPECT_EQ(grid.normals[i], glm::dvec3(0, 1, 0));
+    columns.insert(std::round(1e6 * grid.points[i].x) / 1e6);
+    rows.insert(std::round(1e6 * grid.points[i].z) / 1e6);
+  }
+  ASSERT_EQ(columns.size(), 8U);
+  ASSERT_EQ(rows.size(), 5U);
+  EXPECT_NEAR(*columns.begin(), 10.3, 1e-5);
+  EXPECT_NEAR(*rows.begin(), 1.4, 1e-5);
+}
+
+// A box stands on the floor of one of two rooms: points beneath it are left out, and each room has a grid.
+TEST(Grids, OnSurfacesAreLaidForEachRoom) {
+  Drawing drawing;
+  addBox(drawing, {0, 0, 0}, {4, 3, 2.8}, plaster, addObject(drawing, "Box A"));
+  addBox(drawing, {10, 0, 0}, {14, 3, 2.8}, plaster, addObject(drawing, "Box B"));
+  addBox(drawing, {1, 1, 0}, {2, 2, 0.5}, wood, addObject(drawing, "Crate"));
+  Study study;
+  GridSettings settings = roomGrid(0.5);
+  settings.surface = "box*";
+  settings.height_m = 0.1;
+  study.grids = {settings};
+  const Building building = buildingOf(drawing.scene, study);
+  ASSERT_EQ(building.grids.size(), 2U);
+  const std::size_t all = 2U * (8U * 6U + 8U * 5U + 6U * 5U);
+  EXPECT_EQ(building.grids[0].points.size() + 4U, all);
+  EXPECT_EQ(building.grids[1].points.size(), all);
+  settings.surface = "nothing";
+  study.grids = {settings};
+  EXPECT_THROW(buildingOf(drawing.scene, study), InputError);
+}
+
+// Points in two rooms that share no air are of neither, so each is lit by the air it stands in.
+TEST(Grids, PointsInTwoAirsHaveNoRoom) {
+  Drawing drawing;
+  addBox(drawing, {0, 0, 0}, {4, 3, 2.8});
+  addBox(drawing, {10, 0, 0}, {14, 3, 2.8});
+  EXPECT_EQ(laid(drawing, gridOf({{1, 1, 0.85}, {3, 2, 0.85}})).room, 0);
+  EXPECT_EQ(laid(drawing, gridOf({{1, 1, 0.85}, {11, 1, 0.85}})).room, -1);
+  GridSettings outline = roomGrid(1.0);
+  outline.polygon_m = {{0, 0}, {14, 0}, {14, 3}, {0, 3}};
+  EXPECT_EQ(laid(drawing, outline).room, -1);
 }
 
 }  // namespace

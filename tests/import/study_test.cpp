@@ -272,10 +272,35 @@ TEST(Study, ViewsAllRoundAreReadAndWritten) {
 }
 
 TEST(Study, SaysWhatThisVersionCannotDo) {
-  for (const std::string text : {"[[grid]]\nsurface = \"floor*\"\n", "[accuracy]\ntime_limit_s = 5\n"}) {
-    const std::string message = errorOfText(kModel + text);
-    EXPECT_TRUE(contains(message, "not supported by this version")) << text << message;
-    EXPECT_TRUE(contains(message, "study.toml:")) << message;
+  const std::string message = errorOfText(kModel + "[accuracy]\ntime_limit_s = 5\n");
+  EXPECT_TRUE(contains(message, "not supported by this version")) << message;
+  EXPECT_TRUE(contains(message, "study.toml:")) << message;
+}
+
+// Sensors lie on the surface unless a distance is stated.
+TEST(Study, PutsGridsOnSurfaces) {
+  const Study study = readText(kModel + "[[grid]]\nsurface = \"ceiling*\"\n[[grid]]\nroom = \"Hall\"\n");
+  for (const Study& read : {study, readText(studyToml(study))}) {
+    ASSERT_EQ(read.grids.size(), 2U);
+    EXPECT_EQ(read.grids[0].surface, "ceiling*");
+    EXPECT_EQ(read.grids[0].height_m, 0.0);
+    EXPECT_FALSE(read.grids[1].surface);
+    EXPECT_EQ(read.grids[1].height_m, 0.85);
+  }
+  EXPECT_TRUE(contains(errorOfText(kModel + "[[grid]]\nsurface = \"a\"\nroom = \"b\"\n"), "study.toml:"));
+  EXPECT_TRUE(contains(errorOfText(kModel + "[[grid]]\nsurface = \"a\"\nheight = -1\n"), "study.toml:"));
+}
+
+TEST(Study, TakesADayForSunlight) {
+  const Study study = readText(kModel + "[sunlight]\ndate = 2025-02-01\naltitude_min = 11\n");
+  for (const Study& read : {study, readText(studyToml(study))}) {
+    EXPECT_EQ(dateText(read.sunlight.date), "2025-02-01");
+    EXPECT_EQ(read.sunlight.leastAltitude_deg, 11.0);
+  }
+  EXPECT_EQ(dateText(readText(kModel).sunlight.date), "2026-03-21");
+  for (const std::string wrong : {"date = \"2025-02-01\"", "date = 2025-02-01T10:00:00", "date = 1949-02-01",
+                                  "altitude_min = 91", "day = 3"}) {
+    EXPECT_TRUE(contains(errorOfText(kModel + "[sunlight]\n" + wrong + "\n"), "study.toml:")) << wrong;
   }
 }
 

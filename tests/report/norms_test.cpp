@@ -59,15 +59,26 @@ TEST(Norms, SayWhyTheyAreNotJudged) {
   EXPECT_FALSE(Json::parse(studyJson(made.input()))["rooms"][0]["grids"][0].contains("norms"));
 }
 
-// Sunlight for 1.5, 3 and 4 h.
+// Sunlight for 1.5, 3 and 4 h, on a day from 1 February to 21 March.
 TEST(Norms, SunlightHasLevels) {
   fake::Case made = leedMorning();
   made.solution.rooms.assign(made.building.rooms.size(), {});
+  const auto room = [&] { return Json::parse(studyJson(made.input()))["rooms"][0]; };
   for (const auto& [hours, level] :
        {std::pair{1.49, "none"}, {1.5, "minimum"}, {3.0, "medium"}, {4.0, "high"}}) {
     made.solution.rooms[0].sunlight_h = hours;
-    EXPECT_EQ(Json::parse(studyJson(made.input()))["rooms"][0]["sunlight_level_en17037"], level);
+    EXPECT_EQ(room()["sunlight_level_en17037"], level);
   }
+  for (const auto& [month, day, level] : {std::tuple{1, 31, "not judged"},
+                                          {2, 1, "high"},
+                                          {2, 28, "high"},
+                                          {3, 21, "high"},
+                                          {3, 22, "not judged"}}) {
+    made.study.sunlight.date.month = month;
+    made.study.sunlight.date.day = day;
+    EXPECT_EQ(room()["sunlight_level_en17037"], level) << month << '-' << day;
+  }
+  EXPECT_EQ(room()["sunlight_date"], "2026-03-22");
 }
 
 TEST(Norms, OvercastSkyIsJudged) {

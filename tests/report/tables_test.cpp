@@ -84,7 +84,7 @@ TEST(Tables, HaveTheDocumentedColumns) {
             "min_lx,"
             "uniformity,daylight_factor_mean_pct,daylight_factor_median_pct,daylight_factor_min_pct,"
             "daylight_factor_above_2_pct,illuminance_300_3000_pct,average_daylight_factor_formula_pct,"
-            "sunlight_21_march_h");
+            "sunlight_h");
   EXPECT_EQ(
       headerOf(table(made, "iterations.csv")),
       "domain,iteration,links_required,links_cached,links_reused,visibility_tests,unshot_power_lm,elements,"

@@ -47,6 +47,12 @@ struct Irradiance {
   double directNormal_W_m2 = 0.0, diffuseHorizontal_W_m2 = 0.0;
 };
 
+/// `[sunlight]`: the day on which a room's hours of sunlight are counted.
+struct SunlightSettings {
+  ClockTime date{};                ///< its hour does not matter
+  double leastAltitude_deg = 0.0;  ///< below it the sun does not count
+};
+
 struct SkySettings {
   int cieType = 16;      ///< 1 … 15 as CIE S 011, 16 the traditional overcast sky; 0: uniform (same as 5)
   bool isPerez = false;  ///< Perez all-weather sky in place of a CIE type
@@ -59,11 +65,12 @@ struct SkySettings {
 
 struct GridSettings {
   std::string name;
-  std::optional<std::string> room;    ///< glob over room names; with no polygon and no points: every room
+  std::optional<std::string> room;    ///< glob over room names; with none of the others: every room
   std::vector<glm::dvec2> polygon_m;  ///< plan outline
   std::vector<std::array<double, 6>> points;  ///< x y z nx ny nz, read from the named file
   std::string pointsFile;
-  double height_m = 0.85;
+  std::optional<std::string> surface;  ///< glob over objects: points on their faces, looking along the normal
+  double height_m = 0.85;              ///< above the floor, or from the surface
   double spacing_m = 0.25;
   double inset_m = 0.0;
 };
@@ -117,6 +124,7 @@ struct Study {
   std::vector<std::vector<glm::dvec3>> openings;  ///< outlines of holes in the envelope, without glass
   double dirtFactor = 1.0;                        ///< on every portal's transmittance
   double frameFactor = 1.0;                       ///< likewise; 1 where the model draws its frames
+  SunlightSettings sunlight;
   std::vector<LuminaireSettings> luminaires;
   std::vector<GridSettings> grids;
   std::vector<ViewSettings> views;
@@ -129,6 +137,9 @@ struct Study {
 
 /// "2026-03-21T10:00:00", with the zone where the time has one of its own.
 std::string clockTimeText(const ClockTime& time);
+
+/// Its day alone, "2026-03-21".
+std::string dateText(const ClockTime& time);
 
 /// Reads a study. Unknown keys are an error that names the nearest known one; keys of later versions
 /// are an error that says so. Throws InputError with file and line.

@@ -40,7 +40,7 @@ struct SurfaceValue {
 /// Checks of a room beside its sensors (docs/measures.md). Zero in a room that is open to the outside.
 struct RoomValue {
   double averageDaylightFactor_pct = 0.0;  ///< by Crisp and Littlefair's formula
-  double sunlight_h = 0.0;                 ///< on 21 March, at the best of its panes
+  double sunlight_h = 0.0;                 ///< on the study's day, at the best of its panes
 };
 
 /// One row of iterations.csv; the columns are those of the paper's Tables 1 and 2.
