@@ -7,6 +7,7 @@
 #include "shooting.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace clerestory {
 namespace {
@@ -15,16 +16,39 @@ namespace {
 // reflectance) with M the mean unshot exitance; in an open domain only the share that does not escape comes
 // back each time.
 template <int K>
-void finishWithRootLink(const Domain& domain, const Columns<K>& unshotPower_lm, SolvedDomain<K>& solved) {
-  const Hierarchy& tree = solved.radiosity.tree;
+Columns<K> evenRest(const Domain& domain, const Columns<K>& unshotPower_lm, const SolvedDomain<K>& solved) {
   const auto stays =
       static_cast<float>(1.0 - (domain.open ? domain.escape_m2 / std::max(domain.area_m2, 1e-9) : 0.0));
-  const Columns<K> mean = (1.0F / tree.area_m2[0]) * unshotPower_lm;
+  const Columns<K> mean = (1.0F / solved.radiosity.tree.area_m2[0]) * unshotPower_lm;
   const Columns<K> reflectance = solved.meanReflectance();
-  Columns<K> ambient;
-  for (int c = 0; c < K; ++c) ambient[c] = stays * mean[c] / std::max(1.0F - stays * reflectance[c], 1e-6F);
+  Columns<K> rest;
+  for (int c = 0; c < K; ++c) rest[c] = stays * mean[c] / std::max(1.0F - stays * reflectance[c], 1e-6F);
+  return rest;
+}
+
+// An even rest would light a room behind a door like the one before it. In a closed domain it is spread as
+// the last step's light was, in such strength that all that is unshot is absorbed.
+template <int K>
+void finishWithRootLink(const Domain& domain, const Columns<K>& unshotPower_lm,
+                        const std::vector<Received<K>>& last, SolvedDomain<K>& solved) {
+  const Hierarchy& tree = solved.radiosity.tree;
+  const Columns<K> even = evenRest(domain, unshotPower_lm, solved);
+  // What has come from outside in the only step has a pattern of its own.
+  const bool hasPattern = !domain.open && solved.statistics.size() > 1;
+  std::array<double, K> absorbed_lm{};
+  for (NodeIndex node = 0; hasPattern && node < tree.size(); ++node) {
+    if (!tree.isLeaf(node)) continue;
+    const Columns<K> absorbed = last[node].irradiance_lx - solved.reflected(node, last[node].irradiance_lx);
+    for (int c = 0; c < K; ++c)
+      absorbed_lm[static_cast<std::size_t>(c)] += static_cast<double>(tree.area_m2[node] * absorbed[c]);
+  }
   for (NodeIndex node = 0; node < tree.size(); ++node) {
-    if (tree.isLeaf(node)) solved.radiosity.irradiance_lx[node] += ambient;
+    if (!tree.isLeaf(node)) continue;
+    for (int c = 0; c < K; ++c) {
+      const auto whole_lm = static_cast<float>(absorbed_lm[static_cast<std::size_t>(c)]);
+      solved.radiosity.irradiance_lx[node][c] +=
+          whole_lm > 0.0F ? unshotPower_lm[c] / whole_lm * last[node].irradiance_lx[c] : even[c];
+    }
   }
   Tally tally;
   tally.links = 1;
@@ -83,7 +107,8 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
     const float sum_lm = world.layout.strength(transport.powerOf(sum));
     if (isRootLinkAlone || after_lm <= static_cast<float>(settings.endShare) * sum_lm) break;
   }
-  finishWithRootLink(world.building.domains[static_cast<std::size_t>(domain)], unshotPower_lm, solved);
+  finishWithRootLink(world.building.domains[static_cast<std::size_t>(domain)], unshotPower_lm,
+                     transport.received(), solved);
   cache.replace({}, 0, 1.0F);
   solved.balance.unscaledDefect = transport.unscaledDefect();
   solved.closeBalance();
