@@ -19,6 +19,17 @@ namespace {
 constexpr std::uint32_t samplesMost = 65536;  // of a polygon or the hemisphere
 constexpr int roundsMost = 8;                 // of twice as many
 constexpr std::uint32_t raysOfDisc = 32;      // to the sun's disc, from a sensor
+constexpr float missedBetween = 1.0F;         // samples: of one sample's share of the light
+
+/// How sure light is when more samples are decided on. What all samples have missed, the reveal at the edge
+/// of what a pane shows, is not in their deviation: a few that see the sky alone would seem sure, and too
+/// bright.
+template <int K>
+float doubtOf(const ColumnLayout& layout, const DirectLight<K>& own) {
+  const float missed_lx =
+      missedBetween * layout.strength(own.illuminance_lx) / static_cast<float>(std::max(own.rays, 1U));
+  return std::hypot(own.deviation_lx, missed_lx);
+}
 
 }  // namespace
 
@@ -139,9 +150,12 @@ Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::
     const float all_lx = known_lx + layout.strength(fromPolygons.illuminance_lx + fromLamps.illuminance_lx +
                                                     reflected.illuminance_lx);
     const float allowed_lx = settings.deviationMost * all_lx;
-    if (!(std::hypot(fromPolygons.deviation_lx, reflected.deviation_lx) > allowed_lx)) break;
+    float doubt_lx = doubtOf(layout, reflected);
+    for (const PolygonLight<K>& polygon : polygons)
+      doubt_lx = std::hypot(doubt_lx, doubtOf(layout, polygon.light()));
+    if (!(doubt_lx > allowed_lx)) break;
     const auto carryOn = [&](auto& part, DirectLight<K> own) {
-      if (own.deviation_lx * std::sqrt(parts) > allowed_lx && part.size() < samplesMost) {
+      if (doubtOf(layout, own) * std::sqrt(parts) > allowed_lx && part.size() < samplesMost) {
         part.sampleTo(2 * part.size());
         own = part.light();
       }
