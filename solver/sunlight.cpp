@@ -271,6 +271,15 @@ glm::vec3 mirroredSunlightAt(const World& world, const glm::vec3& point, const g
   return world.sun->normal_lx * sum;
 }
 
+glm::vec3 sunDiscLuminance(const World& world, const glm::vec3& from, const glm::vec3& direction) {
+  if (!world.sun) return glm::vec3(0.0F);
+  static const float radius_rad = static_cast<float>(glm::radians(sunRadius_deg));
+  // The chord: a cosine so near to 1 has no digits left in float.
+  if (glm::length(direction - world.sun->towards) > radius_rad) return glm::vec3(0.0F);
+  const float solidAngle_sr = std::numbers::pi_v<float> * radius_rad * radius_rad;
+  return world.sun->normal_lx / solidAngle_sr * passedAlong(world, from, direction).share;
+}
+
 glm::vec3 sunlightByDisc(const World& world, const glm::vec3& point, const glm::vec3& normal,
                          std::uint32_t rays, std::uint64_t key) {
   glm::vec3 sum(0.0F);

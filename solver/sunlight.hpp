@@ -14,10 +14,13 @@ namespace clerestory {
 /// Glass on the way counts by its angle, wherever it stands; what it reflects or scatters is left out. [lx]
 glm::vec3 sunlightAt(const World& world, const glm::vec3& point, const glm::vec3& normal);
 
-/// The same by the whole disc: `rays` directions over it, seeded by `key`. [lx]
 /// The same by its images in panes, for points outdoors. [lx]
 glm::vec3 mirroredSunlightAt(const World& world, const glm::vec3& point, const glm::vec3& normal);
 
+/// Luminance of the sun's disc along a unit direction, through glass; black beside the disc. [cd/m²]
+glm::vec3 sunDiscLuminance(const World& world, const glm::vec3& from, const glm::vec3& direction);
+
+/// Illuminance by the whole disc: `rays` directions over it, seeded by `key`. [lx]
 glm::vec3 sunlightByDisc(const World& world, const glm::vec3& point, const glm::vec3& normal,
                          std::uint32_t rays, std::uint64_t key);
 

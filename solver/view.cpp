@@ -367,8 +367,11 @@ class Picture {
     const bool isSolved = domain >= 0 && light_.of(domain) != nullptr;
     if (!hit || world_.materialOf(hit.piece).glazing || !isSolved) {
       if (domain_ < 0) return {};
-      return {world_.layout.totalColour(
-          luminanceAlong(light_, domain_, eye_, direction, true).value_or(Columns<K>{}))};
+      Columns<K> seen = luminanceAlong(light_, domain_, eye_, direction, true).value_or(Columns<K>{});
+      if (hit || world_.building.domains[static_cast<std::size_t>(domain_)].open)
+        seen += world_.layout.template light<K>(world_.layout.sunColumn(),
+                                                glm::dvec3(sunDiscLuminance(world_, eye_, direction)));
+      return {world_.layout.totalColour(seen)};
     }
     const glm::vec3 point = eye_ + hit.distance_m * direction;
     const glm::vec3 normal = world_.normalOf(hit.side());

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures of a lit room: every pixel of it has light.
+#include <glm/trigonometric.hpp>
+
 #include <cmath>
 #include <numbers>
+
+#include <solver/glass.hpp>
 
 #include "solved.hpp"
 
@@ -143,6 +147,39 @@ TEST(View, FisheyeAndPanoramaHoldTheLightThatASensorGets) {
     }
   }
   EXPECT_NEAR(around_lx, sensor_lx, 0.03 * sensor_lx);
+}
+
+// Who looks at the sun through a pane sees its disc: 0.53 deg across, and of as much light as the glass lets
+// through of the beam.
+TEST(View, ShowsTheSunsDisc) {
+  Drawing drawing;
+  addRoomWithPane(drawing, {0, 0, 0}, {4, 6, 3}, {0.5, 0.5, 3.5, 2.8});
+  Study study;
+  study.sky.cieType = 12;
+  study.sky.directNormal_lx = 60000.0;
+  study.sky.sun_deg = glm::dvec2(20.0, 170.0);
+  ViewSettings view;
+  view.eye_m = {2, 3, 1.0};
+  const double altitude = glm::radians(20.0), azimuth = glm::radians(170.0);
+  const glm::dvec3 towards(std::cos(altitude) * std::sin(azimuth), std::cos(altitude) * std::cos(azimuth),
+                           std::sin(altitude));
+  view.target_m = view.eye_m + towards;
+  view.fieldOfView_deg = 1.0;
+  view.size_px = {100, 100};
+  study.views = {view};
+  const Building building = buildingOf(drawing.scene, study);
+  const Solution solution = solve(building, study, {});
+  const double pixel_sr = std::pow(2.0 * std::tan(glm::radians(0.5)) / 100.0, 2);
+  double beam_lx = 0.0;
+  int bright = 0;
+  for (const glm::vec3& pixel : solution.views.at(0).pixels_cd_m2) {
+    if (pixel.g < 1e6F) continue;  // the sky has some thousands
+    beam_lx += static_cast<double>(pixel.g) * pixel_sr;
+    ++bright;
+  }
+  EXPECT_NEAR(bright, 0.25 * std::numbers::pi * 53.0 * 53.0, 0.1 * 2200.0);  // pixels at its edge count whole
+  const double expected_lx = 60000.0 * Glass(0.7).transmittance(-towards.y);
+  EXPECT_NEAR(beam_lx, expected_lx, 0.03 * expected_lx);
 }
 
 }  // namespace
