@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whole studies of models that others made; built only where CLERESTORY_MODELS says where these are.
+#include <algorithm>
+#include <cctype>
+
 #include "program.hpp"
 
 namespace clerestory {
@@ -9,8 +12,7 @@ namespace fs = std::filesystem;
 
 const fs::path kModels = CLERESTORY_MODELS;
 
-// Radiance's mean daylight factor has a standard error of 0.5 %; 10 % is the first honest point, held from
-// here on.
+// 100 daylight factors by Radiance, of a standard error of 0.5 %.
 TEST(FurtherModels, RadianceTutorialRoom) {
   const fs::path folder = kModels / "room-radiance-tutorial";
   const Workplace place;
@@ -18,7 +20,7 @@ TEST(FurtherModels, RadianceTutorialRoom) {
   place.write("study.toml", studyOf("rt_room.obj") +
                                 "units = \"m\"\nup = \"z\"\n[materials.\"Glazing\"]\ntransmittance = 0.596\n"
                                 "[[grid]]\nname = \"points\"\npoints = \"points.txt\"\n");
-  const CsvTable sensors(place.study("study.toml --quiet") / "sensors.csv");
+  const CsvTable sensors(place.study("study.toml --quiet --accuracy fine") / "sensors.csv");
   const std::vector<ReferencePoint> reference = readReference(folder / "df_radiance.txt");
   std::vector<double> truth;
   double mean_pct = 0.0;
@@ -31,9 +33,8 @@ TEST(FurtherModels, RadianceTutorialRoom) {
     EXPECT_NEAR(sensors.number(i, "x_m"), reference[i].place_m[0], 1e-5);
     EXPECT_NEAR(sensors.number(i, "y_m"), reference[i].place_m[1], 1e-5);
   }
-  measuredErrors("tutorial room", sensors.numbers("daylight_factor_pct"), truth);
   std::cout << "mean daylight factor " << mean_pct << " %, Radiance " << expected_pct << " %\n";
-  EXPECT_NEAR(mean_pct, expected_pct, 0.10 * expected_pct);
+  EXPECT_LE(measuredErrors("tutorial room", sensors.numbers("daylight_factor_pct"), truth).rms, 0.02);
 }
 
 // A model with many faults, in centimetres and y up: rooms are found, and no value is impossible.
@@ -58,6 +59,72 @@ TEST(FurtherModels, StudioShell) {
             << largest_pct << " %\n";
   EXPECT_GE(rooms.size(), 1U);
 }
+
+struct Dwelling {
+  const char *folder, *model, *units;
+  std::vector<std::string> dark;  ///< rooms without a window whose doors are closed
+};
+
+class FurnishedDwelling : public testing::TestWithParam<Dwelling> {};
+
+// Furnished, with nothing but site and units stated. A room with panes of its own has 0.1 to 20 % in the
+// mean; one that borrows its light through a doorway or over a stair has less; a dark one has none at all, so
+// nothing leaks.
+TEST_P(FurnishedDwelling, HasPlausibleDaylightFactors) {
+  const Dwelling& dwelling = GetParam();
+  const Workplace place;
+  const fs::path folder = kModels / dwelling.folder;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".mtl") place.copy(entry.path());
+  }
+  place.copy(folder / dwelling.model);
+  place.write("study.toml", studyOf(dwelling.model) + "units = \"" + dwelling.units +
+                                "\"\n[site]\nlatitude = 47.4\nlongitude = 8.5\n");
+  const fs::path report = place.study("study.toml --quiet --accuracy draft");
+  const CsvTable rooms(report / "rooms.csv");
+  std::vector<std::string> dark;
+  std::size_t lit = 0;
+  for (std::size_t i = 0; i < rooms.size(); ++i) {
+    const double mean_pct = rooms.number(i, "daylight_factor_mean_pct");
+    const bool hasPanes = rooms.number(i, "average_daylight_factor_formula_pct") > 0.0;
+    std::cout << rooms.text(i, "room") << ' ' << mean_pct << " %\n";
+    lit += hasPanes ? 1 : 0;
+    if (hasPanes) {
+      EXPECT_GT(mean_pct, 0.1) << rooms.text(i, "room");
+      EXPECT_GT(rooms.number(i, "daylight_factor_min_pct"), 0.0) << rooms.text(i, "room");
+    } else {
+      EXPECT_LT(mean_pct, 2.0) << rooms.text(i, "room");
+    }
+    EXPECT_LT(mean_pct, 20.0) << rooms.text(i, "room");
+    if (mean_pct == 0.0) dark.push_back(rooms.text(i, "room"));
+  }
+  EXPECT_GE(lit, 2U);
+  EXPECT_EQ(dark, dwelling.dark);
+  const CsvTable sensors(report / "sensors.csv");
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const bool isDark = std::find(dark.begin(), dark.end(), sensors.text(i, "room")) != dark.end();
+    const double factor_pct = sensors.number(i, "daylight_factor_pct");
+    if (isDark) {
+      EXPECT_EQ(factor_pct, 0.0);
+    }
+    EXPECT_LT(factor_pct, 30.0);  // close before a window
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Models, FurnishedDwelling,
+    testing::Values(Dwelling{"room-sh3d-Studio", "Studio.obj", "cm", {"Room 1"}},
+                    Dwelling{
+                        "room-sh3d-2BedroomApartment", "2BedroomApartment.obj", "cm", {"Room 3", "Room 6"}},
+                    Dwelling{"room-duplex-ifc",
+                             "duplex_webifc.obj",
+                             "m",
+                             {"Room 2", "Room 3", "Room 8", "Room 9", "Room 11", "Room 12"}}),
+    [](const auto& info) {
+      std::string name = info.param.folder;
+      std::erase_if(name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; });
+      return name;
+    });
 
 }  // namespace
 }  // namespace clerestory

@@ -83,10 +83,12 @@ TEST(Reference, FurnishedOfficeKeepsToTheAccuracyAskedFor) {
   expectWithin(errorsOfRoom("furnished", table, "fine"), 0.02, 0.006);
 }
 
-// Twelve furnished offices, every sixth of their sensors. How it stands at fine and with sun is in
-// docs/validation.md; it would take too long here.
-TEST(Reference, FloorOfOfficesKeepsToStandard) {
+// Twelve furnished offices, every sixth of their sensors. With sun at fine it would take too long here;
+// docs/validation.md has it.
+TEST(Reference, FloorOfOfficesKeepsToTheAccuracyAskedFor) {
   expectWithin(errorsOfRoom("floor", "overcast_paths", "standard"), 0.05, 0.005);
+  expectWithin(errorsOfRoom("floor", "overcast_paths", "fine"), 0.02, 0.005);
+  expectWithin(errorsOfRoom("floor", "clear_paths", "standard", clearSky), 0.05, 0.006);
 }
 
 // Radiance's tables are up to 3 % off the paths at the back of the room (docs/validation.md).
