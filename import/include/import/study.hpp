@@ -65,8 +65,8 @@ struct SkySettings {
 
 struct GridSettings {
   std::string name;
-  std::optional<std::string> room;    ///< glob over room names; with none of the others: every room
-  std::vector<glm::dvec2> polygon_m;  ///< plan outline
+  std::optional<std::string> room;            ///< glob over room names; with none of the others: every room
+  std::vector<glm::dvec2> polygon_m;          ///< plan outline
   std::vector<std::array<double, 6>> points;  ///< x y z nx ny nz, read from the named file
   std::string pointsFile;
   std::optional<std::string> surface;  ///< glob over objects: points on their faces, looking along the normal
