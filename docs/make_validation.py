@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs Clerestory on reference scenes and prints the table of docs/validation.md: errors and CPU seconds.
+"""Runs Clerestory on reference scenes and makes the table of docs/validation.md: errors and CPU seconds.
 
   docs/make_validation.py build/release/clerestory tests/data/reference [FOLDER ...] [--accuracy draft standard ...]
+      [--page docs/validation.md]
 
 A folder holds a folder per scene, SCENE/SCENE.obj with SCENE/SCENE_overcast.csv (the cube: cube_emitter.csv).
 Scenes that no folder holds are left out and named at the end. Needs nothing but Python 3.9 and a POSIX system.
@@ -15,6 +16,8 @@ import os
 import pathlib
 import sys
 import tempfile
+
+import page
 
 
 @dataclasses.dataclass
@@ -164,10 +167,11 @@ def main():
     arguments.add_argument("folders", nargs="+", type=pathlib.Path)
     arguments.add_argument("--accuracy", nargs="+", default=["draft", "standard", "fine"])
     arguments.add_argument("--runs", type=int, default=3, help="the least CPU time of so many counts")
+    arguments.add_argument("--page", help="the page that the table is put into; else it is printed")
     given = arguments.parse_args()
 
-    print("| scene (sensors; its reference's standard error) | program | CPU s | RMS % | bias % | p95 % | max % |")
-    print("|---|---|---|---|---|---|---|")
+    lines = ["| scene (sensors; its reference's standard error) | program | CPU s | RMS % | bias % | p95 % | max % |",
+             "|---|---|---|---|---|---|---|"]
     absent = []
     for scene in SCENES:
         models = [folder.resolve() / scene.model for folder in given.folders]
@@ -178,11 +182,13 @@ def main():
         for accuracy in given.accuracy:
             seconds, (rms, bias, p95, most), sensors = measure(
                 str(pathlib.Path(given.program).resolve()), scene, model, accuracy, given.runs)
-            print(f"| {scene.title} ({sensors}; {scene.noise}) | Clerestory, {accuracy} | {seconds:.2f} | {rms:.1f} | "
-                  f"{bias:+.1f} | {p95:.1f} | {most:.1f} |", flush=True)
+            lines.append(f"| {scene.title} ({sensors}; {scene.noise}) | Clerestory, {accuracy} | {seconds:.2f} | "
+                         f"{rms:.1f} | {bias:+.1f} | {p95:.1f} | {most:.1f} |")
+            print(lines[-1], file=sys.stderr)
         by_paths = scene.reference.endswith("_paths.csv")
         for level, *figures in () if by_paths else RADIANCE.get(scene.title, []):
-            print(f"| | Radiance, {level} | " + " | ".join(figures) + " |", flush=True)
+            lines.append(f"| | Radiance, {level} | " + " | ".join(figures) + " |")
+    page.put(lines, "errors", given.page)
     if absent:
         print("Not in the folders given: " + ", ".join(absent), file=sys.stderr)
 
