@@ -13,7 +13,7 @@ def put(lines, name, page):
         return
     file = pathlib.Path(page)
     before = file.read_text(encoding="utf-8")
-    place = re.compile(rf"(<!-- {re.escape(name)}: [^>]*-->\n)(?:.*?\n)?(<!-- end -->)", re.DOTALL)
+    place = re.compile(rf"(<!-- {re.escape(name)}: [^>]*-->\n).*?(<!-- end -->)", re.DOTALL)
     after, count = place.subn(lambda found: found[1] + text + found[2], before)
     if count != 1:
         sys.exit(f"{page} has {count} places for the table {name}")
