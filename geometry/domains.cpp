@@ -27,8 +27,7 @@ constexpr double airMin_m2 = 0.5;        // surface of the smallest air that is 
 constexpr double worthCutting_m2 = 3.0;  // surface of an air for which a side is cut at its border
 constexpr std::uint32_t raysOfPoint = 6;
 constexpr std::uint32_t pointsOfSide = 3;  // at least; one where a side is smaller than an opening
-constexpr double pointsOfModel = 4000.0;   // further ones at most, shared out by area
-constexpr double pointsOfSquareMetre = 4.0;
+constexpr double pointsOfModel = 4000.0;   // further ones, shared out by area
 constexpr std::uint32_t pointsOfSideMax = 256;
 constexpr std::uint32_t closerRays = 32;  // of a closer look
 constexpr std::uint32_t closerRaysOfSmall = 8;
@@ -244,8 +243,7 @@ class AirSurvey {
 
   [[nodiscard]] std::uint32_t countPlaces(std::uint32_t side, double total_m2) const {
     const double share = pieces_.area_m2[side / 2] / std::max(total_m2, 1e-9);
-    const auto further =
-        static_cast<std::uint32_t>(std::min(pointsOfModel, pointsOfSquareMetre * total_m2) * share);
+    const auto further = static_cast<std::uint32_t>(pointsOfModel * share);
     const std::uint32_t least = isSmallerThanOpening(localPolygon(side / 2)) ? 1 : pointsOfSide;
     return std::min(least + further, pointsOfSideMax);
   }
