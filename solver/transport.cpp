@@ -376,7 +376,7 @@ void Transport<K>::evenViews() {
   struct Side {
     Columns<K> excess_lm, room_lm;
   };
-  constexpr float viewLeast = 0.75F;
+  constexpr float viewLeast = 0.6F;
   std::vector<Side> sides(tree_.sides.size());
   const auto whole = [](const Received<K>& received) {
     return received.view < viewLeast ? received : (1.0F / received.view) * received;
