@@ -16,6 +16,7 @@ namespace {
 
 constexpr float samplesLeast = 2.0F;   // of a polygon
 constexpr float lampRaysLeast = 8.0F;  // of a luminaire
+constexpr float stripsOfSky = 0.1F;    // share of a pane that may show sky where samples have met none
 
 }  // namespace
 
@@ -70,9 +71,16 @@ std::vector<PolygonLight<K>> portalsAt(const SolvedLight<K>& light, std::int32_t
     const glm::vec3 inward = world.normalOf(2 * portal.piece + (portal.frontIsInside ? 0U : 1U));
     const auto polygon = world.polygon(portal.piece);
     if (glm::dot(receiver - polygon[0], inward) <= 0.0F) continue;
+    // What a pane shows by the strips of sky between blades, which few samples may all have missed.
+    const glm::vec3 outward = glm::normalize(polygon[0] - receiver);
+    const float open_lm_m2 =
+        stripsOfSky * std::numbers::pi_v<float> *
+        world.glassOf(portal.piece).transmittance(std::abs(glm::dot(outward, inward))) *
+        world.layout.strength(light.skyLuminance(glm::vec3(outward.x, outward.y, std::abs(outward.z))));
     polygons.emplace_back(
         world.layout, receiver, normal, polygon, mixKeys(key, portal.piece),
-        [&light, &portal, receiver](const glm::vec3& p) { return light.throughPortal(portal, receiver, p); });
+        [&light, &portal, receiver](const glm::vec3& p) { return light.throughPortal(portal, receiver, p); },
+        open_lm_m2);
     if (polygons.back().formFactor() <= 0.0F) polygons.pop_back();
   }
   return polygons;

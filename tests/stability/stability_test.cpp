@@ -286,11 +286,10 @@ TEST(Stability, GrazingLamp) {
   solvedAtThree(scene);
 }
 
-// The bounds hold what is reached, far from what is asked: see docs/stability.md.
+// The defect, and white blades at draft, are held to what is reached: see docs/stability.md.
 TEST(Stability, LouvresWith500Blades) {
-  constexpr Bounds bounds{.defect = 0.10, .draftFromFine = 0.5, .standardFromFine = 0.5};
-  const Three black = solvedAtThree(louvres(0.0), bounds);
-  const Three white = solvedAtThree(louvres(0.8), bounds);
+  const Three black = solvedAtThree(louvres(0.0), {.defect = 0.10});
+  const Three white = solvedAtThree(louvres(0.8), {.defect = 0.10, .draftFromFine = 0.14});
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_GT(meanOf(white.at[i].sensors_lx()), meanOf(black.at[i].sensors_lx()));
   }
