@@ -36,7 +36,7 @@ float doubtOf(const ColumnLayout& layout, const DirectLight<K>& own) {
 template <int K>
 std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain,
                                          const glm::vec3& fromIn, const glm::vec3& directionIn,
-                                         bool withDirect) {
+                                         bool withDirect, float* distance_m) {
   const World& world = light.world();
   Columns<K> sum;
   float weight = 1.0F;
@@ -44,6 +44,7 @@ std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32
   glm::vec3 direction = directionIn;
   for (int depth = 0; depth < mirrorDepth; ++depth) {
     const auto hit = world.rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
+    if (depth == 0 && distance_m != nullptr) *distance_m = hit.distance_m;
     if (!hit) {
       // Only an open domain sees the sky without glass; in a closed one this is a leak.
       if (!world.building.domains[static_cast<std::size_t>(domain)].open) return std::nullopt;
@@ -236,7 +237,7 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
 
 #define CLERESTORY_INSTANTIATE(K)                                                                         \
   template std::optional<Columns<K>> luminanceAlong<K>(const SolvedLight<K>&, std::int32_t,               \
-                                                       const glm::vec3&, const glm::vec3&, bool);         \
+                                                       const glm::vec3&, const glm::vec3&, bool, float*); \
   template Gathered<K> gather<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&, const glm::vec3&, \
                                  const GatherSettings&, std::uint64_t, float);                            \
   template GridValues senseGrid<K>(const SolvedLight<K>&, const SensorGrid&, const GatherSettings&, double);

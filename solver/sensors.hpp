@@ -38,10 +38,11 @@ Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::
 
 /// Luminance along a ray in the air of a domain, glass seen through and mirrored in. [cd/m²]
 /// withDirect: surfaces' own emission and what is seen through portals belong to it. Nothing where the ray
-/// ends on a side that faces no solved air: in a crack.
+/// ends on a side that faces no solved air: in a crack. `distance_m` receives how far the first thing met is.
 template <int K>
 std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain,
-                                         const glm::vec3& from, const glm::vec3& direction, bool withDirect);
+                                         const glm::vec3& from, const glm::vec3& direction, bool withDirect,
+                                         float* distance_m = nullptr);
 
 /// Values of a grid's sensors.
 template <int K>
