@@ -27,7 +27,7 @@ namespace {
 struct Tuning {
   TransportSettings transport;
   GatherSettings sensors;
-  GatherSettings views;
+  PictureSettings views;
   PlainSettings plain;
   double solverError;  ///< relative, of reflected light that a sensor gathers
 };
@@ -40,7 +40,7 @@ Tuning tuningFor(double accuracy, const SolveOptions& options) {
   tuning.sensors.direct = {static_cast<float>(32.0 * finer), static_cast<float>(32.0 * finer)};
   tuning.sensors.rays = static_cast<std::uint32_t>(std::clamp(128.0 * finer, 32.0, 4096.0));
   tuning.sensors.deviationMost = static_cast<float>(0.2 * accuracy);
-  tuning.views = {{96.0F, 2.0F}, 64};
+  tuning.views = picturesFor(accuracy);
   tuning.solverError = 0.01 + 0.5 * accuracy;
   tuning.plain.elementSize_m = static_cast<float>(0.4 / std::sqrt(finer));
   tuning.plain.raysPerElement = static_cast<std::uint32_t>(std::max(128.0 * finer, 8.0));

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rays to points on luminous polygons, all of one receiver's in packets.
+#include "directfield.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <geometry/sampling.hpp>
+#include <solver/formfactor.hpp>
+
+namespace clerestory {
+namespace {
+
+constexpr std::uint32_t raysOfPortal = 256;  // for its mean luminance
+constexpr float raysLeast = 2.0F;            // of a polygon
+constexpr int roundsMost = 3;                // of twice as many
+constexpr float missedBetween = 0.5F;        // samples: of one sample's share of a pane's mean light
+constexpr float nearFormFactor = 0.08F;      // above it a polygon's points are chosen by solid angle
+
+/// Mean luminance that a portal shows inside, by cosine over its area.
+template <int K>
+Columns<K> meanLuminance(const SolvedLight<K>& light, const Portal& portal, const glm::vec3& inward) {
+  const Sequence sequence(mixKeys(0xf10d, portal.piece));
+  Columns<K> sum;
+  for (std::uint32_t i = 0; i < raysOfPortal; ++i) {
+    const glm::vec3 point =
+        pointOnPolygon<glm::vec3>(light.world().polygon(portal.piece), sequence(i, 0), sequence(i, 1));
+    const glm::vec3 direction = cosineDirection(-inward, sequence(i, 2), sequence(i, 3));
+    sum += light.behindPortal(portal, point - 1e-3F * direction, point);
+  }
+  return (1.0F / static_cast<float>(raysOfPortal)) * sum;
+}
+
+}  // namespace
+
+template <int K>
+DirectField<K>::DirectField(const SolvedLight<K>& light, std::int32_t domain)
+    : light_(light), world_(light.world()), domain_(domain) {
+  const auto add = [&](std::uint32_t side, const Portal* portal, const Columns<K>& luminance_cd_m2) {
+    const float strength = world_.layout.strength(luminance_cd_m2);
+    if (!(strength > 0.0F)) return;
+    shiners_.push_back({world_.polygon(side / 2), world_.normalOf(side), portal, mixKeys(0xd1f, side),
+                        luminance_cd_m2, strength});
+  };
+  for (const Portal& portal : world_.building.portals) {
+    if (portal.inside != domain) continue;
+    const std::uint32_t side = 2 * portal.piece + (portal.frontIsInside ? 0U : 1U);
+    add(side, &portal, meanLuminance(light, portal, world_.normalOf(side)));
+  }
+  const Radiosity<K>* radiosity = light.of(domain);
+  if (radiosity == nullptr || !world_.layout.electric) return;
+  for (const std::uint32_t i : radiosity->emitters)
+    add(radiosity->tree.sides[i].side, nullptr, std::numbers::inv_pi_v<float> * radiosity->exitance_lm_m2[i]);
+}
+
+template <int K>
+std::vector<typename DirectField<K>::Part> DirectField<K>::partsAt(const glm::vec3& point,
+                                                                   const glm::vec3& normal) const {
+  std::vector<Part> parts;
+  parts.reserve(shiners_.size());
+  for (const Shiner& shiner : shiners_) {
+    if (glm::dot(point - shiner.polygon[0], shiner.inward) <= 0.0F) continue;
+    const float formFactor = pointToPolygon(point, normal, shiner.polygon);
+    if (formFactor > 0.0F) parts.push_back({&shiner, formFactor, 0, {}, 0.0F, 0.0F, 0.0F});
+  }
+  return parts;
+}
+
+template <int K>
+Columns<K> DirectField<K>::unhidden(const glm::vec3& point, const glm::vec3& normal) const {
+  Columns<K> sum_lx;
+  for (const Part& part : partsAt(point, normal))
+    sum_lx += std::numbers::pi_v<float> * part.formFactor * part.shiner->luminance_cd_m2;
+  for (const Lamp& lamp : world_.lamps) {
+    if (lamp.domain() != domain_) continue;
+    sum_lx += world_.layout.template light<K>(
+        world_.layout.electricColumn(),
+        static_cast<double>(lamp.illuminance_lx(point, normal)) * lamp.color());
+  }
+  return sum_lx;
+}
+
+// Points are even over the polygon's area and weighed by what it sends from there to the receiver, so an
+// unhidden even polygon comes out exact; where one is so near that few points would weigh most, they are even
+// by solid angle instead.
+template <int K>
+void DirectField<K>::sample(std::vector<Part>& parts, std::span<const std::uint32_t> counts,
+                            const glm::vec3& point, const glm::vec3& normal, std::uint64_t key) const {
+  std::vector<Probe> toPortals;
+  std::vector<Probe> toEmitters;
+  std::vector<RayScene::Segment> portalRays;
+  std::vector<RayScene::Segment> emitterRays;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    Part& part = parts[p];
+    if (counts[p] <= part.rays) continue;
+    const Shiner& shiner = *part.shiner;
+    const Sequence sequence(mixKeys(key, shiner.key));
+    const float height_m = glm::dot(shiner.polygon[0] - point, shiner.inward);
+    std::optional<SphericalPolygon> seen;
+    if (part.formFactor > nearFormFactor) {
+      seen.emplace(point, normal, shiner.polygon);
+      if (!(seen->solidAngle_sr() > 0.0)) seen.reset();
+    }
+    for (std::uint32_t i = part.rays; i < counts[p]; ++i) {
+      glm::vec3 onPolygon;
+      float weight = 0.0F;
+      if (seen) {
+        const glm::vec3 direction = seen->direction(sequence(i, 0), sequence(i, 1));
+        const float approach = glm::dot(direction, shiner.inward);
+        weight = approach < 0.0F ? glm::dot(direction, normal) : 0.0F;
+        onPolygon = point + (height_m / approach) * direction;
+      } else {
+        onPolygon = pointOnPolygon<glm::vec3>(shiner.polygon, sequence(i, 0), sequence(i, 1));
+        const glm::vec3 way = onPolygon - point;
+        const float square = glm::dot(way, way);
+        weight = -glm::dot(way, normal) * glm::dot(way, shiner.inward) / (square * square);
+      }
+      if (!(weight > 0.0F)) continue;
+      part.weights += weight;
+      (shiner.portal != nullptr ? toPortals : toEmitters).push_back({p, weight});
+      (shiner.portal != nullptr ? portalRays : emitterRays).push_back({point, onPolygon});
+    }
+    part.rays = counts[p];
+  }
+  const auto add = [&](const Probe& probe, const Columns<K>& luminance) {
+    Part& part = parts[probe.part];
+    const float strength = world_.layout.strength(luminance);
+    part.sum += probe.weight * luminance;
+    part.strengths += probe.weight * strength;
+    part.squares += probe.weight * strength * strength;
+  };
+  std::vector<std::uint8_t> blocked(std::max(portalRays.size(), emitterRays.size()));
+  world_.rays.occluded(portalRays, RayScene::Barrier::opaque, std::span(blocked).first(portalRays.size()));
+  for (std::size_t i = 0; i < toPortals.size(); ++i) {
+    if (blocked[i] != 0) continue;
+    add(toPortals[i], light_.behindPortal(*parts[toPortals[i].part].shiner->portal, point, portalRays[i].to));
+  }
+  std::vector<float> visible(emitterRays.size());
+  world_.visibility(emitterRays, std::span(blocked).first(emitterRays.size()), visible);
+  for (std::size_t i = 0; i < toEmitters.size(); ++i) {
+    if (visible[i] > 0.0F) add(toEmitters[i], visible[i] * parts[toEmitters[i].part].shiner->luminance_cd_m2);
+  }
+}
+
+// Even points miss the area beyond an edge by less than random ones: n^(-3/4) in two dimensions. What all of
+// them have missed is not in their variance: a bright sliver at the edge of what a pane shows.
+template <int K>
+DirectLight<K> DirectField<K>::lightOf(const Part& part) const {
+  if (!(part.weights > 0.0F)) return {{}, 0.0F, part.rays};
+  const float scale = std::numbers::pi_v<float> * part.formFactor;
+  const float mean = part.strengths / part.weights;
+  const float variance = std::max(part.squares / part.weights - mean * mean, 0.0F);
+  const auto rays = static_cast<float>(part.rays);
+  const float missed = part.shiner->portal != nullptr ? missedBetween * part.shiner->strength / rays : 0.0F;
+  return {(scale / part.weights) * part.sum,
+          scale * std::hypot(std::sqrt(variance) / std::pow(rays, 0.75F), missed), part.rays};
+}
+
+template <int K>
+DirectLight<K> DirectField<K>::light(const glm::vec3& point, const glm::vec3& normal, float rays,
+                                     float deviationMost, float known_lx, std::uint64_t key) const {
+  std::vector<Part> parts = partsAt(point, normal);
+  float all = 0.0F;
+  for (const Part& part : parts) all += part.formFactor * part.shiner->strength;
+  std::vector<std::uint32_t> counts;
+  for (const Part& part : parts)
+    counts.push_back(static_cast<std::uint32_t>(
+        std::ceil(std::max(rays * part.formFactor * part.shiner->strength / all, raysLeast))));
+  const DirectLight<K> fromLamps =
+      directFromLamps<K>(world_, domain_, point, normal, {0.0F, rays}, mixKeys(key, 4));
+  for (int round = 0;; ++round) {
+    sample(parts, counts, point, normal, key);
+    DirectLight<K> sum = fromLamps;
+    for (const Part& part : parts) sum += lightOf(part);
+    const float allowed_lx = deviationMost * (known_lx + world_.layout.strength(sum.illuminance_lx));
+    if (round == roundsMost || sum.deviation_lx <= allowed_lx) return sum;
+    const float share_lx = allowed_lx / std::sqrt(static_cast<float>(parts.size() + 1));
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      if (lightOf(parts[p]).deviation_lx > share_lx) counts[p] *= 2;
+    }
+  }
+}
+
+#define CLERESTORY_INSTANTIATE(K) template class DirectField<K>;
+CLERESTORY_STUDY_WIDTHS(CLERESTORY_INSTANTIATE)
+
+}  // namespace clerestory

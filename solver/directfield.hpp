@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Direct light at the many points of a picture: by exact form factors were nothing in the way, and by rays as
+// the share of that which arrives.
+#pragma once
+
+#include <vector>
+
+#include "direct.hpp"
+#include "radiosity.hpp"
+
+namespace clerestory {
+
+/// All that shines on the surfaces of a domain: its portals, its emitting sides and its luminaires.
+template <int K>
+class DirectField {
+ public:
+  DirectField(const SolvedLight<K>& light, std::int32_t domain);
+
+  /// Light at a point with unit `normal`, were nothing in the way and every polygon of its mean luminance.
+  /// What arrives divided by this varies only where something casts a shadow, and slowly with the angle.
+  /// [lx]
+  [[nodiscard]] Columns<K> unhidden(const glm::vec3& point, const glm::vec3& normal) const;
+
+  /// Light at a point by about `rays` rays, shared out by what each polygon would send unhidden; then by more
+  /// where its deviation is above `deviationMost` of all light, `known_lx` of other light among it. `key`
+  /// seeds them.
+  [[nodiscard]] DirectLight<K> light(const glm::vec3& point, const glm::vec3& normal, float rays,
+                                     float deviationMost, float known_lx, std::uint64_t key) const;
+
+ private:
+  struct Shiner {
+    std::span<const glm::vec3> polygon;
+    glm::vec3 inward;
+    const Portal* portal;  ///< null: an emitting side
+    std::uint64_t key;
+    Columns<K> luminance_cd_m2;  ///< of a portal: mean over its area and directions by cosine
+    float strength;              ///< of that luminance
+  };
+  /// A shiner as a point has sampled it.
+  struct Part {
+    const Shiner* shiner;
+    float formFactor;
+    std::uint32_t rays = 0;
+    Columns<K> sum;
+    float weights = 0.0F, strengths = 0.0F, squares = 0.0F;
+  };
+  /// A ray to be cast, of one of the parts.
+  struct Probe {
+    std::size_t part;
+    float weight;
+  };
+
+  [[nodiscard]] std::vector<Part> partsAt(const glm::vec3& point, const glm::vec3& normal) const;
+  void sample(std::vector<Part>& parts, std::span<const std::uint32_t> counts, const glm::vec3& point,
+              const glm::vec3& normal, std::uint64_t key) const;
+  [[nodiscard]] DirectLight<K> lightOf(const Part& part) const;
+
+  const SolvedLight<K>& light_;
+  const World& world_;
+  std::int32_t domain_;
+  std::vector<Shiner> shiners_;
+};
+
+}  // namespace clerestory
