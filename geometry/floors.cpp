@@ -21,6 +21,7 @@ namespace {
 
 constexpr float headroom_m = 1.6F;
 constexpr double levelTolerance_m = 0.002;  // faces of one floor
+constexpr double underCeiling_m = 0.12;     // free of furniture
 constexpr double reachLeast_m = 0.35;       // from somewhere on a floor to the walls
 constexpr double platformLeast_m = 0.7;     // width of a floor of another level: a sill has less
 constexpr double sliverMost_m = 0.015;      // width, as a tile has it: of joints of 7.5 mm
@@ -118,16 +119,24 @@ class FloorLooks {
   }
 
  private:
-  /// That of the nearest cell about a place that nothing hides from it.
+  /// That of the nearest cell about a place that nothing hides from it: at a person's middle or, between
+  /// furniture, under the ceiling.
   [[nodiscard]] std::int32_t regionSeenFrom(const glm::dvec2& place, std::uint32_t cell,
                                             const AirSpan& span) const {
     constexpr double most_m = 1.0;
-    const double height_m = span.low_m + std::min(0.5 * (span.high_m - span.low_m), most_m);
+    const double low_m = span.low_m + std::min(0.5 * (span.high_m - span.low_m), most_m);
+    const double high_m = storey_.ceiling_m - underCeiling_m;
+    const std::int32_t region = regionSeenAt({place, low_m}, cell);
+    const bool reachesUp = span.high_m > high_m && high_m > low_m;
+    return region >= 0 || !reachesUp ? region : regionSeenAt({place, high_m}, cell);
+  }
+
+  [[nodiscard]] std::int32_t regionSeenAt(const glm::dvec3& place, std::uint32_t cell) const {
     std::array<std::pair<double, std::uint32_t>, 9> cells;
     std::size_t count = 0;
     const auto offer = [&](std::uint32_t other) {
       if (other != AirMap::none && storey_.parted.region[other] >= 0)
-        cells[count++] = {glm::length(air_.map.middleOf(other) - place), other};
+        cells[count++] = {glm::length(air_.map.middleOf(other) - glm::dvec2(place)), other};
     };
     offer(cell);
     for (int way = 0; way < 4; ++way) {
@@ -136,16 +145,14 @@ class FloorLooks {
       if (next != AirMap::none) offer(air_.map.neighbour(next, (way + 1) % 4));
     }
     std::sort(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(count));
+    const glm::vec3 from(place - rays_.origin());
     for (std::size_t i = 0; i < count; ++i) {
-      const auto local = [&](const glm::dvec2& plan) {
-        return glm::vec3(glm::dvec3(plan, height_m) - rays_.origin());
-      };
       const std::uint32_t other = cells[i].second;
+      const glm::vec3 to(glm::dvec3(air_.map.middleOf(other), place.z) - rays_.origin());
       const bool isInAir = std::ranges::any_of(air_.map.spans(other), [&](const AirSpan& air) {
-        return air.low_m < height_m && air.high_m > height_m;
+        return air.low_m < place.z && air.high_m > place.z;
       });
-      if (isInAir &&
-          !rays_.occluded(local(place), local(air_.map.middleOf(other)), RayScene::Barrier::opaqueAndGlass))
+      if (isInAir && !rays_.occluded(from, to, RayScene::Barrier::opaqueAndGlass))
         return storey_.parted.region[other];
     }
     return -1;
@@ -158,7 +165,6 @@ class FloorLooks {
 
   [[nodiscard]] Look lookAt(std::uint32_t cell, std::int32_t region, const AirColumn& column, double low_m,
                             double high_m) const {
-    constexpr double underCeiling_m = 0.12;
     Look look{cell, region, &column, false, true};
     for (const AirSpan& span : column.spans) {
       const bool isOnFloor = span.low_m > low_m - levelTolerance_m && span.low_m < high_m + levelTolerance_m;
@@ -282,6 +288,7 @@ void addFaces(const Building& building, const RayScene& rays, const RoomAir& air
               FloorLooks& looks, Level& level) {
   constexpr double allShare = 0.67;        // things on a floor hide the air from some looks
   constexpr double sharedLeast_m2 = 0.05;  // a smaller face is of one region, or of none
+  constexpr double slitLeast_m2 = 1e-4;    // a smaller sliver is left out: rounding says what is seen from it
   constexpr double sliverShare = 0.95;     // a joint reaches under walls, a sheet's edge stands in a room
   const Storey& storey = air.storeys[s];
   level.faces.resize(at(storey.parted.count));
@@ -289,6 +296,8 @@ void addFaces(const Building& building, const RayScene& rays, const RoomAir& air
   for (const Tile& tile : level.pieces) covered.push_back(tile.piece);
   const std::vector<PlanLine> lines = linesOf(building, rays, air, s, level);
   for (const FloorFace& face : floorFaces(building.model.pieces, covered, lines)) {
+    const bool isSliver = 4.0 * face.area_m2 < sliverMost_m * face.outline_m;
+    if (isSliver && face.area_m2 < slitLeast_m2) continue;
     const auto count = static_cast<std::uint32_t>(std::clamp(24.0 + 16.0 * face.area_m2, 24.0, 400.0));
     std::map<std::int32_t, Tile> ofRegion;
     for (const glm::dvec2& place : face.samples(air.map.frame(), count)) {
@@ -297,7 +306,6 @@ void addFaces(const Building& building, const RayScene& rays, const RoomAir& air
       ofRegion.try_emplace(look->region, Tile{0, level.height_m, face.area_m2, face.outline_m, {}})
           .first->second.looks.push_back(*look);
     }
-    const bool isSliver = 4.0 * face.area_m2 < sliverMost_m * face.outline_m;
     const bool isSmall = face.area_m2 < sharedLeast_m2;
     const double shareLeast = isSliver ? sliverShare : isSmall ? 0.5 : 1.0 - allShare;
     for (auto& [region, tile] : ofRegion) {

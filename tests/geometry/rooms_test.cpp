@@ -107,6 +107,16 @@ TEST(Rooms, MeetAtTheEdgesOfTheirFloors) {
   }
 }
 
+// A gap that nothing is seen from at the height of people is the room's, as it is open above.
+TEST(Rooms, FloorGoesOnBetweenBookcases) {
+  Drawing drawing;
+  addRoomWithPane(drawing, {0, 0, 0}, {4, 3, 3}, {1.0, 1.0, 3.0, 2.0});
+  for (const double x : {1.0, 1.51, 2.02}) addBox(drawing, {x, 2.6, 0}, {x + 0.5, 2.98, 2.1}, wood, 0);
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 1U);
+  EXPECT_NEAR(building.rooms[0].floorArea_m2, 12.0, 1e-6);
+}
+
 TEST(Rooms, PaneBelongsToTheRoomItIsIn) {
   const Building building = buildingOf(twoRooms(0.9, 2.05).scene);
   ASSERT_EQ(building.portals.size(), 1U);
