@@ -10,6 +10,8 @@
 
 #include <geometry/parallel.hpp>
 
+#include "rooms.hpp"
+
 namespace clerestory {
 namespace {
 
@@ -20,20 +22,13 @@ constexpr std::size_t meetingsMost = 1000;
 constexpr double upward = 0.95;  // cosine of the steepest floor
 constexpr float beneath_m = 0.1F;
 
-/// Unit vector along most of the domain's walls: the mean of their directions, in which quarter turns are
-/// alike.
-glm::dvec2 mainDirection(const Building& building, std::int32_t domain) {
-  const Pieces& pieces = building.model.pieces;
-  glm::dvec2 sum(0.0);
+/// Pieces that a domain has a side of.
+std::vector<std::uint32_t> piecesOf(const Building& building, std::int32_t domain) {
+  std::vector<std::uint32_t> pieces;
   for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
-    const glm::dvec3& normal = pieces.normal[side / 2];
-    if (building.sideDomain[side] != domain || std::abs(normal.z) > 0.1) continue;
-    const double angle = 4.0 * std::atan2(normal.y, normal.x);
-    sum += pieces.area_m2[side / 2] * glm::dvec2(std::cos(angle), std::sin(angle));
+    if (building.sideDomain[side] == domain) pieces.push_back(side / 2);
   }
-  const double turned = std::atan2(sum.y, sum.x) / 4.0;
-  if (glm::length(sum) < 1e-9 || std::abs(turned) < 1e-7) return {1.0, 0.0};
-  return {std::cos(turned), std::sin(turned)};
+  return pieces;
 }
 
 }  // namespace
@@ -46,6 +41,11 @@ AirColumn airColumn(const Building& building, const RayScene& rays, std::int32_t
   from.z -= beneath_m;
   double last_m = 0.0;
   bool lastIsOurs = false;
+  // A floor or a ceiling may run on over a hollow wall: what is seen from between the two decides.
+  const auto isAir = [&](bool isOursBelow, bool isOursAbove, double middle_m) {
+    if (isOursBelow == isOursAbove) return isOursBelow;
+    return isInAir(building, rays, {place, middle_m}, domain);
+  };
   for (std::size_t meeting = 0; meeting < meetingsMost; ++meeting) {
     const auto hit = rays.nearest(from, {0, 0, 1}, RayScene::Barrier::opaqueAndGlass);
     if (!hit) break;
@@ -56,7 +56,7 @@ AirColumn airColumn(const Building& building, const RayScene& rays, std::int32_t
     const double height_m = corner.z - glm::dot(glm::dvec2(normal), place - glm::dvec2(corner)) / normal.z;
     const std::uint32_t below = hit.side();
     const bool belowIsOurs = building.sideDomain[below] == domain;
-    if (meeting > 0 && (lastIsOurs || belowIsOurs) && height_m > last_m)
+    if (meeting > 0 && height_m > last_m && isAir(lastIsOurs, belowIsOurs, 0.5 * (last_m + height_m)))
       column.spans.push_back({last_m, height_m});
     if (std::abs(normal.z) > upward) column.treads.push_back({height_m, hit.piece});
     last_m = height_m;
@@ -67,23 +67,24 @@ AirColumn airColumn(const Building& building, const RayScene& rays, std::int32_t
 
 AirMap::AirMap(const Building& building, const RayScene& rays, std::int32_t domain,
                std::span<const std::uint32_t> sides)
-    : along_(mainDirection(building, domain)), across_(-along_.y, along_.x) {
+    : frame_(planFrameOf(building.model.pieces.points, building.model.pieces.polygons,
+                         piecesOf(building, domain))) {
   const Pieces& pieces = building.model.pieces;
   low_ = glm::dvec2(1e300);
   glm::dvec2 high(-1e300);
   bottom_m_ = 1e300;
   for (const std::uint32_t side : sides) {
     for (const std::uint32_t corner : pieces.polygons[side / 2]) {
-      const glm::dvec2 plan(pieces.points[corner]);
-      const glm::dvec2 turned(glm::dot(plan, along_), glm::dot(plan, across_));
-      low_ = glm::min(low_, turned);
-      high = glm::max(high, turned);
+      const glm::dvec2 place = frame_.toFrame(glm::dvec2(pieces.points[corner]));
+      low_ = glm::min(low_, place);
+      high = glm::max(high, place);
       bottom_m_ = std::min(bottom_m_, pieces.points[corner].z);
     }
   }
   const glm::dvec2 size_m = glm::max(high - low_, glm::dvec2(0.0));
   cell_m_ = std::max(cellLeast_m, std::sqrt(size_m.x * size_m.y / cellsMost));
-  low_ -= offset * cell_m_;
+  // Counted from the frame's origin: a side more or less moves no cell.
+  low_ = cell_m_ * (glm::floor(low_ / cell_m_ - offset) + offset);
   columns_ = static_cast<std::uint32_t>(std::ceil((high.x - low_.x) / cell_m_)) + 1;
   rows_ = static_cast<std::uint32_t>(std::ceil((high.y - low_.y) / cell_m_)) + 1;
   columnOf_.resize(size());
@@ -94,16 +95,13 @@ AirMap::AirMap(const Building& building, const RayScene& rays, std::int32_t doma
 }
 
 std::uint32_t AirMap::cellAt(const glm::dvec2& place) const {
-  const double x = std::floor((glm::dot(place, along_) - low_.x) / cell_m_);
-  const double y = std::floor((glm::dot(place, across_) - low_.y) / cell_m_);
-  if (x < 0.0 || y < 0.0 || x >= columns_ || y >= rows_) return none;
-  return static_cast<std::uint32_t>(y) * columns_ + static_cast<std::uint32_t>(x);
+  const glm::dvec2 cell = glm::floor((frame_.toFrame(place) - low_) / cell_m_);
+  if (cell.x < 0.0 || cell.y < 0.0 || cell.x >= columns_ || cell.y >= rows_) return none;
+  return static_cast<std::uint32_t>(cell.y) * columns_ + static_cast<std::uint32_t>(cell.x);
 }
 
 glm::dvec2 AirMap::middleOf(std::uint32_t cell) const {
-  const double x = low_.x + (cell % columns_ + 0.5) * cell_m_;
-  const double y = low_.y + (cell / columns_ + 0.5) * cell_m_;
-  return x * along_ + y * across_;
+  return frame_.toPlan(low_ + cell_m_ * (glm::dvec2(cell % columns_, cell / columns_) + 0.5));
 }
 
 std::uint32_t AirMap::neighbour(std::uint32_t cell, int way) const {
@@ -116,7 +114,7 @@ std::uint32_t AirMap::neighbour(std::uint32_t cell, int way) const {
 }
 
 glm::dvec2 AirMap::edgeTo(std::uint32_t cell, int way) const {
-  const glm::dvec2 half = 0.5 * cell_m_ * (way % 2 == 0 ? along_ : across_);
+  const glm::dvec2 half = 0.5 * cell_m_ * (way % 2 == 0 ? frame_.along : frame_.across);
   return middleOf(cell) + (way < 2 ? half : -half);
 }
 

@@ -9,6 +9,8 @@
 #include <geometry/building.hpp>
 #include <geometry/rays.hpp>
 
+#include "planframe.hpp"
+
 namespace clerestory {
 
 /// Air of the domain over one cell of the plan.
@@ -32,7 +34,8 @@ struct AirColumn {
 AirColumn airColumn(const Building& building, const RayScene& rays, std::int32_t domain,
                     const glm::dvec2& place, double bottom_m);
 
-/// Square cells along the domain's main walls, so that a turned model has the same cells. Row by row.
+/// Square cells in the domain's frame, so that a model has the same cells however it is turned or mirrored.
+/// Row by row.
 class AirMap {
  public:
   static constexpr std::uint32_t none = 0xffffffffU;
@@ -47,8 +50,7 @@ class AirMap {
   [[nodiscard]] std::uint32_t size() const { return columns_ * rows_; }
   [[nodiscard]] std::uint32_t cellAt(const glm::dvec2& place) const;  ///< none outside the raster
   [[nodiscard]] glm::dvec2 middleOf(std::uint32_t cell) const;
-  /// The neighbour east (0), north (1), west (2) or south (3) of a cell in the raster's own frame; none at
-  /// its rim.
+  /// The neighbour east (0), north (1), west (2) or south (3) of a cell in the frame; none at the rim.
   [[nodiscard]] std::uint32_t neighbour(std::uint32_t cell, int way) const;
   /// The middle of the edge to that neighbour.
   [[nodiscard]] glm::dvec2 edgeTo(std::uint32_t cell, int way) const;
@@ -56,11 +58,12 @@ class AirMap {
   [[nodiscard]] const AirColumn& column(std::uint32_t cell) const { return columnOf_[cell]; }
   [[nodiscard]] const std::vector<AirSpan>& spans(std::uint32_t cell) const { return column(cell).spans; }
   [[nodiscard]] const std::vector<Tread>& treads(std::uint32_t cell) const { return column(cell).treads; }
+  [[nodiscard]] const PlanFrame& frame() const { return frame_; }
   [[nodiscard]] double bottom_m() const { return bottom_m_; }
 
  private:
-  glm::dvec2 along_{1.0, 0.0}, across_{0.0, 1.0};  // unit
-  glm::dvec2 low_{0.0};                            // in the raster's frame
+  PlanFrame frame_;
+  glm::dvec2 low_{0.0};  // in the frame
   double bottom_m_ = 0.0;
   double cell_m_ = 0.0;
   std::uint32_t columns_ = 0, rows_ = 0;

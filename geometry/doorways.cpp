@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 
 #include "cut.hpp"
 
@@ -93,16 +92,11 @@ std::vector<Upright> wholeOnes(const std::vector<Upright>& pieces) {
 
 }  // namespace
 
-std::vector<Upright> uprightsOf(const Building& building, std::int32_t domain) {
-  const Pieces& pieces = building.model.pieces;
-  std::set<std::uint32_t> looksIntoDomain;  // polygons
-  for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
-    if (building.sideDomain[side] == domain) looksIntoDomain.insert(pieces.polygon[side / 2]);
-  }
+std::vector<Upright> uprightsOf(const Pieces& pieces) {
   std::vector<Upright> uprights;
   for (std::uint32_t piece = 0; piece < pieces.size(); ++piece) {
     const glm::dvec3& normal = pieces.normal[piece];
-    if (std::abs(normal.z) > 0.02 || !looksIntoDomain.contains(pieces.polygon[piece])) continue;
+    if (std::abs(normal.z) > 0.02) continue;
     const auto corners = pieces.polygons[piece];
     const glm::dvec2 any(pieces.points[corners[0]]);
     Upright upright{any,
@@ -124,7 +118,7 @@ std::vector<Upright> uprightsOf(const Building& building, std::int32_t domain) {
 std::vector<Doorway> doorwaysOf(const Building& building, const RoomAir& air, const Storey& storey) {
   std::vector<Doorway> doorways;
   if (storey.parted.openings.empty()) return doorways;
-  std::vector<Upright> uprights = wholeOnes(uprightsOf(building, air.domain));
+  std::vector<Upright> uprights = wholeOnes(uprightsOf(building.model.pieces));
   std::erase_if(uprights, [&](const Upright& upright) {
     return std::min(upright.high_m, storey.floor_m + 2.0) - std::max(upright.low_m, storey.floor_m) <
            uprightHeight_m;

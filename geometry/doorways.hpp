@@ -32,8 +32,8 @@ struct Upright {
   std::uint32_t polygon;  ///< that it is a part of
 };
 
-/// Those of polygons that look into a domain, also where a piece is hidden in a wall.
-std::vector<Upright> uprightsOf(const Building& building, std::int32_t domain);
+/// Those of all polygons, also where a piece is hidden in a wall.
+std::vector<Upright> uprightsOf(const Pieces& pieces);
 
 /// The openings of a storey. Their ends lie in the middle of the reveals that they stand between, else at the
 /// nearest upright edge of a wall, else where the raster has them.

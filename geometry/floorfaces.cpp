@@ -7,9 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
-
-#include <geometry/sampling.hpp>
 
 #include "planeedges.hpp"
 #include "soup.hpp"
@@ -46,19 +45,55 @@ class PlanPoints {
   std::map<std::pair<long long, long long>, std::vector<std::uint32_t>> cells_;
 };
 
-/// Edges of the pieces, the covered side on their left, and lines.
+/// Where a triangle meets a line of a frame.
+struct Stretch {
+  double line;  ///< its number
+  double from_m, to_m;
+};
+
+void addStretches(const std::array<glm::dvec2, 3>& triangle, double first_m, double step_m,
+                  std::vector<Stretch>& stretches) {
+  const auto [low, high] = std::minmax({triangle[0].y, triangle[1].y, triangle[2].y});
+  for (double line = std::ceil((low - first_m) / step_m); first_m + line * step_m < high; ++line) {
+    const double y = first_m + line * step_m;
+    Stretch stretch{line, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const glm::dvec2& a = triangle[i];
+      const glm::dvec2& b = triangle[(i + 1) % 3];
+      if ((a.y <= y) == (b.y <= y)) continue;
+      const double x = a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
+      stretch.from_m = std::min(stretch.from_m, x);
+      stretch.to_m = std::max(stretch.to_m, x);
+    }
+    if (stretch.to_m > stretch.from_m) stretches.push_back(stretch);
+  }
+}
+
+/// Edges of the pieces, the covered side on their left; those of each surface stay, though it goes on in
+/// another.
 std::vector<PlaneEdge> edgesOf(const Pieces& pieces, std::span<const std::uint32_t> level,
                                std::span<const PlanLine> lines, PlanPoints& points) {
-  EdgeSum sum;
+  std::map<std::uint32_t, EdgeSum> bySurface;
   for (const std::uint32_t piece : level) {
     Loop loop;
     for (const std::uint32_t corner : pieces.polygons[piece])
       loop.push_back(points.indexOf(glm::dvec2(pieces.points[corner])));
     if (pieces.normal[piece].z < 0.0) std::reverse(loop.begin(), loop.end());
-    for (std::size_t i = 0; i < loop.size(); ++i) sum.add(loop[i], loop[(i + 1) % loop.size()], 1);
+    EdgeSum& own = bySurface[pieces.surface[piece]];
+    for (std::size_t i = 0; i < loop.size(); ++i) own.add(loop[i], loop[(i + 1) % loop.size()], 1);
   }
-  for (const PlanLine& line : lines) sum.add(points.indexOf(line.from_m), points.indexOf(line.to_m), 0);
-  return sum.take();
+  std::vector<PlaneEdge> edges;
+  const auto stay = [&](std::uint32_t from, std::uint32_t to) {
+    if (from != to) edges.push_back({std::min(from, to), std::max(from, to), 0});
+  };
+  for (auto& [surface, own] : bySurface) {
+    for (const PlaneEdge& edge : splitAtPoints(points.all(), own.take(), same_m)) {
+      edges.push_back(edge);
+      stay(edge.from, edge.to);
+    }
+  }
+  for (const PlanLine& line : lines) stay(points.indexOf(line.from_m), points.indexOf(line.to_m));
+  return edges;
 }
 
 /// Empty where the edges cannot be parted.
@@ -76,20 +111,41 @@ Triangulation triangulateAll(std::vector<PlaneEdge> edges, PlanPoints& points) {
 
 }  // namespace
 
-glm::dvec2 FloorFace::sample(std::uint32_t index, std::uint32_t count) const {
-  double target_m2 = area_m2 * (index + 0.5) / count;
-  std::size_t chosen = 0;
-  for (; chosen + 1 < triangles.size(); ++chosen) {
-    const auto& [a, b, c] = triangles[chosen];
-    const double own_m2 = 0.5 * cross2(b - a, c - a);
-    if (target_m2 < own_m2) break;
-    target_m2 -= own_m2;
+std::vector<glm::dvec2> FloorFace::samples(const PlanFrame& frame, std::uint32_t count) const {
+  constexpr double linesLeast = 3.0;
+  constexpr double offset = 0.382;  // of the way between lines: edges lie on round shares of a face
+  double low_m = std::numeric_limits<double>::infinity();
+  double high_m = -low_m;
+  std::vector<std::array<glm::dvec2, 3>> framed = triangles;
+  for (auto& triangle : framed) {
+    for (glm::dvec2& corner : triangle) {
+      corner = frame.toFrame(corner);
+      low_m = std::min(low_m, corner.y);
+      high_m = std::max(high_m, corner.y);
+    }
   }
-  const auto& [a, b, c] = triangles[chosen];
-  const Sequence sequence(0xf100);
-  const double out = std::sqrt(static_cast<double>(sequence(index, 0)));
-  const double along = static_cast<double>(sequence(index, 1));
-  return a + out * (b - a) + out * along * (c - b);
+  const double lines = std::max(linesLeast, std::ceil((high_m - low_m) / std::sqrt(area_m2 / count)));
+  const double step_m = (high_m - low_m) / lines;
+  std::vector<Stretch> stretches;
+  for (const auto& triangle : framed) addStretches(triangle, low_m + offset * step_m, step_m, stretches);
+  std::sort(stretches.begin(), stretches.end(), [](const Stretch& a, const Stretch& b) {
+    return a.line != b.line ? a.line < b.line : a.from_m < b.from_m;
+  });
+  double total_m = 0.0;
+  for (const Stretch& stretch : stretches) total_m += stretch.to_m - stretch.from_m;
+  std::vector<glm::dvec2> points;
+  double passed_m = 0.0;
+  for (const Stretch& stretch : stretches) {
+    const double end_m = passed_m + stretch.to_m - stretch.from_m;
+    for (; points.size() < count;) {
+      const double way_m = total_m * (static_cast<double>(points.size()) + offset) / count;
+      if (way_m >= end_m) break;
+      points.push_back(
+          frame.toPlan({stretch.from_m + way_m - passed_m, low_m + (stretch.line + offset) * step_m}));
+    }
+    passed_m = end_m;
+  }
+  return points;
 }
 
 std::vector<FloorFace> floorFaces(const Pieces& pieces, std::span<const std::uint32_t> level,
@@ -108,12 +164,15 @@ std::vector<FloorFace> floorFaces(const Pieces& pieces, std::span<const std::uin
       const Triangulation::Triangle& triangle = triangles[open.back()];
       open.pop_back();
       std::array<glm::dvec2, 3> corners;
+      for (std::size_t i = 0; i < 3; ++i) corners[i] = points.all()[triangle.corner[i]];
       for (std::size_t i = 0; i < 3; ++i) {
-        corners[i] = points.all()[triangle.corner[i]];
         const std::uint32_t next = triangle.neighbour[i];
-        if (triangle.constrained[i] || next == Triangulation::none || seen[next]) continue;
-        seen[next] = true;
-        open.push_back(next);
+        if (triangle.constrained[i] || next == Triangulation::none) {
+          face.outline_m += glm::length(corners[(i + 1) % 3] - corners[i]);
+        } else if (!seen[next]) {
+          seen[next] = true;
+          open.push_back(next);
+        }
       }
       face.area_m2 += 0.5 * cross2(corners[1] - corners[0], corners[2] - corners[0]);
       face.triangles.push_back(corners);

@@ -10,6 +10,8 @@
 
 #include <geometry/building.hpp>
 
+#include "planframe.hpp"
+
 namespace clerestory {
 
 struct PlanLine {
@@ -19,10 +21,11 @@ struct PlanLine {
 /// A part of a floor in plan that no line divides.
 struct FloorFace {
   double area_m2 = 0.0;
+  double outline_m = 0.0;                            ///< length, of holes too
   std::vector<std::array<glm::dvec2, 3>> triangles;  ///< counterclockwise
 
-  /// Point `index` of `count`, spread evenly by area.
-  [[nodiscard]] glm::dvec2 sample(std::uint32_t index, std::uint32_t count) const;
+  /// Points spread evenly along lines of a frame, whatever the triangles.
+  [[nodiscard]] std::vector<glm::dvec2> samples(const PlanFrame& frame, std::uint32_t count) const;
 };
 
 /// What some level pieces cover together, each place once, divided by `lines` and by the outlines of surfaces

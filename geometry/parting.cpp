@@ -26,18 +26,18 @@ std::size_t at(std::int32_t index) {
   return static_cast<std::size_t>(index);
 }
 
-/// Chamfer distance (Borgefors 1986, 3-4) to cells that are not `inside`; the raster's rim is outside. [m]
-std::vector<double> distanceToWalls(const AirMap& map, const std::vector<bool>& inside) {
+/// Chamfer distance (Borgefors 1986, 3-4) of high cells to others and to what stands between. [m]
+std::vector<double> distanceToWalls(const AirMap& map, const StoreyCells& cells) {
   constexpr int far = 1 << 20;
   std::vector<int> way(map.size());
-  for (std::uint32_t cell = 0; cell < map.size(); ++cell) way[cell] = inside[cell] ? far : 0;
+  for (std::uint32_t cell = 0; cell < map.size(); ++cell) way[cell] = cells.high[cell] ? far : 0;
   const auto relax = [&](std::uint32_t cell, int straightWay, int firstWay, int secondWay) {
-    const std::uint32_t straight = map.neighbour(cell, straightWay);
-    const std::uint32_t first = map.neighbour(cell, firstWay);
+    const std::uint32_t straight = cells.neighbourAbove(map, cell, straightWay);
+    const std::uint32_t first = cells.neighbourAbove(map, cell, firstWay);
     way[cell] = std::min(way[cell], 3 + (straight == none ? 0 : way[straight]));
     way[cell] = std::min(way[cell], 3 + (first == none ? 0 : way[first]));
     for (const int sideways : {firstWay, secondWay}) {
-      const std::uint32_t slant = straight == none ? none : map.neighbour(straight, sideways);
+      const std::uint32_t slant = straight == none ? none : cells.neighbourAbove(map, straight, sideways);
       if (slant != none) way[cell] = std::min(way[cell], 4 + way[slant]);
     }
   };
@@ -50,11 +50,11 @@ std::vector<double> distanceToWalls(const AirMap& map, const std::vector<bool>& 
 
 /// The basins of the distance to walls: two meet where the way between them is a neck at its widest. Cells
 /// are taken from the middles of rooms outwards (Meyer 1994, joining by height).
-std::vector<std::int32_t> basinsOf(const AirMap& map, const std::vector<bool>& high,
+std::vector<std::int32_t> basinsOf(const AirMap& map, const StoreyCells& cells,
                                    const std::vector<double>& toWall_m) {
   std::vector<std::uint32_t> order;
   for (std::uint32_t cell = 0; cell < map.size(); ++cell) {
-    if (high[cell]) order.push_back(cell);
+    if (cells.high[cell]) order.push_back(cell);
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return toWall_m[a] > toWall_m[b]; });
@@ -68,7 +68,7 @@ std::vector<std::int32_t> basinsOf(const AirMap& map, const std::vector<bool>& h
   for (const std::uint32_t cell : order) {
     std::int32_t own = -1;
     for (int way = 0; way < 4; ++way) {
-      const std::uint32_t next = map.neighbour(cell, way);
+      const std::uint32_t next = cells.neighbourAbove(map, cell, way);
       if (next == none || label[next] < 0) continue;
       const std::int32_t other = root(label[next]);
       if (own < 0 || own == other) {
@@ -93,17 +93,18 @@ std::vector<std::int32_t> basinsOf(const AirMap& map, const std::vector<bool>& h
   return label;
 }
 
-/// Cells without a value take that of the nearest one that has one, going from cell to cell where `mayPass`.
-template <class MayPass>
-void growInto(const AirMap& map, std::vector<std::int32_t>& value, const MayPass& mayPass) {
+/// Cells without a value take that of the nearest one that has one, going from cell to cell by `neighbour`
+/// where `mayPass`.
+template <class Neighbour, class MayPass>
+void growInto(std::vector<std::int32_t>& value, const Neighbour& neighbour, const MayPass& mayPass) {
   std::vector<std::uint32_t> front;
-  for (std::uint32_t cell = 0; cell < map.size(); ++cell) {
+  for (std::uint32_t cell = 0; cell < value.size(); ++cell) {
     if (value[cell] >= 0) front.push_back(cell);
   }
   for (std::size_t first = 0; first < front.size(); ++first) {
     const std::uint32_t cell = front[first];
     for (int way = 0; way < 4; ++way) {
-      const std::uint32_t next = map.neighbour(cell, way);
+      const std::uint32_t next = neighbour(cell, way);
       if (next == none || value[next] >= 0 || !mayPass(cell, next)) continue;
       value[next] = value[cell];
       front.push_back(next);
@@ -111,22 +112,22 @@ void growInto(const AirMap& map, std::vector<std::int32_t>& value, const MayPass
   }
 }
 
-/// Numbers sets of cells that are connected over neighbours that are `alike`; -1 where `inside` is not.
+/// Numbers sets of high cells that are connected over neighbours that are `alike`; -1 for others.
 template <class Alike>
-std::vector<std::int32_t> connected(const AirMap& map, const std::vector<bool>& inside, const Alike& alike) {
+std::vector<std::int32_t> connected(const AirMap& map, const StoreyCells& cells, const Alike& alike) {
   std::vector<std::int32_t> label(map.size(), -1);
   std::int32_t count = 0;
   std::vector<std::uint32_t> front;
   for (std::uint32_t start = 0; start < map.size(); ++start) {
-    if (!inside[start] || label[start] >= 0) continue;
+    if (!cells.high[start] || label[start] >= 0) continue;
     front.assign(1, start);
     label[start] = count;
     while (!front.empty()) {
       const std::uint32_t cell = front.back();
       front.pop_back();
       for (int way = 0; way < 4; ++way) {
-        const std::uint32_t next = map.neighbour(cell, way);
-        if (next == none || !inside[next] || label[next] >= 0 || !alike(cell, next)) continue;
+        const std::uint32_t next = cells.neighbourAbove(map, cell, way);
+        if (next == none || label[next] >= 0 || !alike(cell, next)) continue;
         label[next] = count;
         front.push_back(next);
       }
@@ -178,17 +179,18 @@ class Parting {
   Parting(const AirMap& map, const StoreyCells& cells)
       : map_(map),
         cells_(cells),
-        toWall_m_(distanceToWalls(map, cells.high)),
-        basin_(basinsOf(map, cells.high, toWall_m_)) {
+        toWall_m_(distanceToWalls(map, cells)),
+        basin_(basinsOf(map, cells, toWall_m_)) {
+    const auto neighbour = [&](std::uint32_t cell, int way) { return cells_.neighbour(map_, cell, way); };
     floor_.assign(map.size(), -1);
     for (std::uint32_t cell = 0; cell < map.size(); ++cell) {
       if (cells.high[cell]) floor_[cell] = cells.surface[cell];
     }
-    growInto(map, floor_, [&](std::uint32_t a, std::uint32_t b) { return basin_[a] == basin_[b]; });
-    region_ = connected(map, cells.high, [&](std::uint32_t a, std::uint32_t b) {
+    growInto(floor_, neighbour, [&](std::uint32_t a, std::uint32_t b) { return basin_[a] == basin_[b]; });
+    region_ = connected(map, cells, [&](std::uint32_t a, std::uint32_t b) {
       return basin_[a] == basin_[b] && floor_[a] == floor_[b];
     });
-    growInto(map, region_, [&](std::uint32_t, std::uint32_t next) { return bool{cells_.any[next]}; });
+    growInto(region_, neighbour, [&](std::uint32_t, std::uint32_t next) { return bool{cells_.any[next]}; });
   }
 
   Parted settle() {
@@ -236,8 +238,8 @@ class Parting {
       ++own.cells;
       own.circle_m = std::max(own.circle_m, toWall_m_[cell]);
       for (int way = 0; way < 4; ++way) {
-        const std::uint32_t next = map_.neighbour(cell, way);
-        if (next != none && cells_.high[next] && region_[next] == region_[cell]) continue;
+        const std::uint32_t next = cells_.neighbourAbove(map_, cell, way);
+        if (next != none && region_[next] == region_[cell]) continue;
         ++own.outline;
         if (next != none && onlyFloorsDiffer(cell, next)) ++own.floorEdges;
       }
@@ -256,7 +258,7 @@ class Parting {
     bordersOf_.clear();
     for (std::uint32_t cell = 0; cell < map_.size(); ++cell) {
       for (int way = 0; way < 2; ++way) {
-        const std::uint32_t next = map_.neighbour(cell, way);
+        const std::uint32_t next = cells_.neighbour(map_, cell, way);
         if (next == none || region_[cell] < 0 || region_[next] < 0 || region_[cell] == region_[next])
           continue;
         const auto [low, high] = std::minmax(region_[cell], region_[next]);
@@ -285,8 +287,8 @@ class Parting {
     own.floorEdges += gone.floorEdges;
     const Pair both{std::min(region, other), std::max(region, other)};
     for (const Edge& edge : edgesOf_.at(both)) {  // counted by either, now within
-      const std::uint32_t next = map_.neighbour(edge.cell, edge.way);
-      if (!cells_.high[edge.cell] || !cells_.high[next]) continue;
+      const std::uint32_t next = cells_.neighbourAbove(map_, edge.cell, edge.way);
+      if (!cells_.high[edge.cell] || next == none) continue;
       own.outline -= 2;
       if (onlyFloorsDiffer(edge.cell, next)) own.floorEdges -= 2;
     }
@@ -326,8 +328,10 @@ class Parting {
     for (const Edge& edge : edges) {
       const std::uint32_t next = map_.neighbour(edge.cell, edge.way);
       ++steps[static_cast<std::size_t>(edge.way)];
-      if (cells_.high[edge.cell] && cells_.high[next]) ++high;
-      if (onlyFloorsDiffer(edge.cell, next)) ++floors;
+      if (cells_.high[edge.cell] && cells_.neighbourAbove(map_, edge.cell, edge.way) == next) {
+        ++high;
+        if (onlyFloorsDiffer(edge.cell, next)) ++floors;
+      }
       if (floor_[edge.cell] == floor_[next]) ++same;
     }
     Border border{regions, std::move(edges)};
@@ -427,7 +431,9 @@ Parted partAtNecks(const AirMap& map, const StoreyCells& cells) {
 }
 
 std::vector<std::int32_t> nearestRegion(const AirMap& map, std::vector<std::int32_t> region) {
-  growInto(map, region, [](std::uint32_t, std::uint32_t) { return true; });
+  growInto(
+      region, [&](std::uint32_t cell, int way) { return map.neighbour(cell, way); },
+      [](std::uint32_t, std::uint32_t) { return true; });
   return region;
 }
 

@@ -13,6 +13,26 @@ struct StoreyCells {
   std::vector<bool> high;             ///< has air above the doors
   std::vector<bool> any;              ///< has air
   std::vector<std::int32_t> surface;  ///< of its floor; -1 where none is met
+  using ByWay = std::array<std::vector<bool>, 2>;
+  ByWay isClosed;       ///< something stands between it and its neighbour east, north
+  ByWay isClosedAbove;  ///< likewise above the doors, if both are high: a lintel
+
+  /// The neighbour that nothing keeps a cell from, as AirMap::neighbour has them.
+  [[nodiscard]] std::uint32_t neighbour(const AirMap& map, std::uint32_t cell, int way) const {
+    return neighbourBut(isClosed, map, cell, way);
+  }
+  /// The neighbour above the doors of a high cell.
+  [[nodiscard]] std::uint32_t neighbourAbove(const AirMap& map, std::uint32_t cell, int way) const {
+    const std::uint32_t next = neighbourBut(isClosedAbove, map, cell, way);
+    return next == AirMap::none || !high[next] ? AirMap::none : next;
+  }
+
+ private:
+  static std::uint32_t neighbourBut(const ByWay& closed, const AirMap& map, std::uint32_t cell, int way) {
+    const std::uint32_t next = map.neighbour(cell, way);
+    if (next == AirMap::none) return next;
+    return closed[static_cast<std::size_t>(way % 2)][way < 2 ? cell : next] ? AirMap::none : next;
+  }
 };
 
 /// Where two regions meet.

@@ -64,7 +64,7 @@ std::vector<RoomAir> airOfRooms(const Building& building, const RayScene& rays) 
   for (const auto& [domain, extent] : extents) {
     if (extent.floor_m2 < floorLeast_m2 || extent.high_m - extent.low_m < heightLeast_m) continue;
     RoomAir air{domain, AirMap(building, rays, domain, extent.sides), {}, {}};
-    air.storeys = storeysOf(air.map, pieces);
+    air.storeys = storeysOf(air.map, pieces, rays);
     for (const Storey& storey : air.storeys) air.doorways.push_back(doorwaysOf(building, air, storey));
     if (!air.storeys.empty()) airs.push_back(std::move(air));
   }

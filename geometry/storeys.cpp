@@ -69,10 +69,32 @@ double ceilingOver(const AirMap& map, double floor_m) {
   return most == cells.end() ? floor_m + headroom_m : most->first;
 }
 
-StoreyCells cellsOf(const AirMap& map, const Pieces& pieces, double floor_m, double end_m, double ceiling_m) {
+/// Whether something stands between two cells of a storey, in the middle of the tallest air that both have
+/// between two heights.
+bool isClosedBetween(const AirMap& map, const RayScene& rays, std::uint32_t a, std::uint32_t b, double low_m,
+                     double high_m) {
+  double tallest_m = 0.0;
+  double middle_m = 0.0;
+  for (const AirSpan& first : map.spans(a)) {
+    for (const AirSpan& second : map.spans(b)) {
+      const double bottom_m = std::max({first.low_m, second.low_m, low_m});
+      const double top_m = std::min({first.high_m, second.high_m, high_m});
+      if (top_m - bottom_m <= tallest_m) continue;
+      tallest_m = top_m - bottom_m;
+      middle_m = 0.5 * (bottom_m + top_m);
+    }
+  }
+  const auto local = [&](std::uint32_t cell) {
+    return glm::vec3(glm::dvec3(map.middleOf(cell), middle_m) - rays.origin());
+  };
+  return tallest_m <= 0.0 || rays.occluded(local(a), local(b), RayScene::Barrier::opaqueAndGlass);
+}
+
+StoreyCells cellsOf(const AirMap& map, const Pieces& pieces, const RayScene& rays, double floor_m,
+                    double end_m, double ceiling_m) {
   const double high_m = floor_m + std::clamp(ceiling_m - floor_m - underCeiling_m, headroom_m, overDoors_m);
-  StoreyCells cells{std::vector<bool>(map.size()), std::vector<bool>(map.size()),
-                    std::vector<std::int32_t>(map.size(), -1)};
+  const std::vector<bool> none(map.size());
+  StoreyCells cells{none, none, std::vector<std::int32_t>(map.size(), -1), {none, none}, {none, none}};
   for (std::uint32_t cell = 0; cell < map.size(); ++cell) {
     for (const AirSpan& span : map.spans(cell)) {
       if (span.low_m > std::min(end_m, high_m + aboveDoors_m) || span.high_m < floor_m + sameFloor_m)
@@ -81,9 +103,21 @@ StoreyCells cellsOf(const AirMap& map, const Pieces& pieces, double floor_m, dou
       if (span.high_m > high_m) cells.high[cell] = true;
     }
     for (const Tread& tread : map.treads(cell)) {
-      if (std::abs(tread.height_m - floor_m) > sameFloor_m) continue;
-      cells.surface[cell] = static_cast<std::int32_t>(pieces.surface[tread.piece]);
-      break;
+      if (std::abs(tread.height_m - floor_m) <= sameFloor_m)
+        cells.surface[cell] =
+            static_cast<std::int32_t>(pieces.surface[tread.piece]);  // of several the highest
+    }
+  }
+  for (int way = 0; way < 2; ++way) {
+    const auto w = static_cast<std::size_t>(way);
+    for (std::uint32_t cell = 0; cell < map.size(); ++cell) {
+      const std::uint32_t next = map.neighbour(cell, way);
+      if (next == AirMap::none || !cells.any[cell] || !cells.any[next]) continue;
+      const bool isOpenAbove =
+          cells.high[cell] && cells.high[next] && !isClosedBetween(map, rays, cell, next, high_m, end_m);
+      cells.isClosedAbove[w][cell] = !isOpenAbove;
+      cells.isClosed[w][cell] =
+          !isOpenAbove && isClosedBetween(map, rays, cell, next, floor_m - sameFloor_m, end_m);
     }
   }
   return cells;
@@ -91,14 +125,17 @@ StoreyCells cellsOf(const AirMap& map, const Pieces& pieces, double floor_m, dou
 
 }  // namespace
 
-std::vector<Storey> storeysOf(const AirMap& map, const Pieces& pieces) {
+std::vector<Storey> storeysOf(const AirMap& map, const Pieces& pieces, const RayScene& rays) {
   std::vector<Storey> storeys;
   const std::vector<double> floors = floorsOf(map);
   for (std::size_t i = 0; i < floors.size(); ++i) {
     const double end_m = i + 1 < floors.size() ? floors[i + 1] : std::numeric_limits<double>::infinity();
     const double ceiling_m = std::min(ceilingOver(map, floors[i]), end_m);
-    Storey storey{
-        floors[i], end_m, ceiling_m, partAtNecks(map, cellsOf(map, pieces, floors[i], end_m, ceiling_m)), {}};
+    Storey storey{floors[i],
+                  end_m,
+                  ceiling_m,
+                  partAtNecks(map, cellsOf(map, pieces, rays, floors[i], end_m, ceiling_m)),
+                  {}};
     if (storey.parted.count == 0) continue;
     storey.nearest = nearestRegion(map, storey.parted.region);
     storeys.push_back(std::move(storey));

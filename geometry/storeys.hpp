@@ -15,6 +15,6 @@ struct Storey {
 };
 
 /// Storeys that have a region, from the lowest up. Floors of two storeys are 1.8 m apart at least.
-std::vector<Storey> storeysOf(const AirMap& map, const Pieces& pieces);
+std::vector<Storey> storeysOf(const AirMap& map, const Pieces& pieces, const RayScene& rays);
 
 }  // namespace clerestory

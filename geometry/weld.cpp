@@ -11,6 +11,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "planframe.hpp"
 #include "triangulate.hpp"
 
 namespace clerestory {
@@ -28,7 +29,7 @@ class NearPoints {
   /// The nearest point within the tolerance (the first of equals), or `none`.
   [[nodiscard]] std::uint32_t nearest(const glm::dvec3& point) const {
     const Cell centre = cell(point);
-    double best = tolerance_m_;
+    double best = tolerance_m_ - same_m;
     std::uint32_t result = none;
     for (std::int64_t dx = -1; dx <= 1; ++dx) {
       for (std::int64_t dy = -1; dy <= 1; ++dy) {
@@ -37,7 +38,9 @@ class NearPoints {
           if (found == cells_.end()) continue;
           for (const auto& [position, index] : found->second) {
             const double distance = glm::length(position - point);
-            if (distance < best || (distance == best && result != none && index < result)) {
+            const bool isNearer = distance < best - same_m;
+            const bool isFirst = result != none && distance < best + same_m && index < result;
+            if (isNearer || isFirst) {
               best = distance;
               result = index;
             }
@@ -67,6 +70,7 @@ class NearPoints {
            static_cast<std::uint64_t>(c.z) * 0x165667b19e3779f9U;
   }
 
+  static constexpr double same_m = 1e-7;  ///< distances that rounding alone tells apart
   double tolerance_m_;
   std::unordered_map<std::uint64_t, std::vector<std::pair<glm::dvec3, std::uint32_t>>> cells_;
 };
@@ -205,6 +209,19 @@ std::vector<long> weightsOf(const Soup& soup, std::span<const std::uint32_t> pla
   return weights;
 }
 
+/// How far places lie along a direction of the model's own frame, askew to its axes: which of two comes first
+/// changes neither where a model is turned nor where it is mirrored. [m]
+std::vector<double> ranksOf(const Soup& soup, std::span<const glm::dvec3> places) {
+  const glm::dvec3 askew(0.612, 0.275, 0.741);
+  Loop all(soup.faces.size());
+  std::iota(all.begin(), all.end(), 0U);
+  const PlanFrame frame = planFrameOf(soup.points, soup.faces, all);
+  std::vector<double> ranks_m;
+  for (const glm::dvec3& place : places)
+    ranks_m.push_back(glm::dot(glm::dvec3(frame.toFrame(glm::dvec2(place)), place.z), askew));
+  return ranks_m;
+}
+
 }  // namespace
 
 Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts) {
@@ -214,20 +231,23 @@ Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts)
   std::vector<glm::dvec3> places;
   const std::vector<std::uint32_t> placeOf = distinctPlaces(soup, onTheGrid, places);
   const std::vector<long> weights = weightsOf(soup, placeOf, places.size());
+  const std::vector<double> ranks = ranksOf(soup, places);
   Loop order(places.size());
   std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return weights[a] > weights[b]; });
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return weights[a] != weights[b] ? weights[a] > weights[b] : ranks[a] < ranks[b];
+  });
 
   NearPoints near(tolerances.weld_m);
   Loop keptOf(places.size());
   std::vector<bool> isKept(places.size(), false);
-  for (const std::uint32_t place : order) {
-    keptOf[place] = near.nearest(places[place]);
-    if (keptOf[place] != NearPoints::none) continue;
-    keptOf[place] = place;
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    const std::uint32_t place = order[i];
+    const std::uint32_t found = near.nearest(places[place]);
+    keptOf[place] = found == NearPoints::none ? place : order[found];
+    if (found != NearPoints::none) continue;
     isKept[place] = true;
-    near.add(places[place], place);
+    near.add(places[place], i);
   }
   Soup result;
   Loop numberOf(places.size());

@@ -66,14 +66,31 @@ TEST(FurtherModels, OpenPlanOfficeAndTutorialRoomAreOneRoom) {
   expectRooms(buildingOfModel("room-radiance-tutorial/rt_room.obj"), {37.16}, 1);
 }
 
-TEST(FurtherModels, AreTheSameHoweverTheyAreDrawn) {
-  for (const char* file :
-       {"room-honeybee/single_family_home.obj", "room-honeybee/model_complete_multi_zone_office.obj",
-        "room-radiance-tutorial/rt_room.obj"}) {
-    SCOPED_TRACE(file);
-    drawn::expectSameHoweverDrawn(std::filesystem::path(CLERESTORY_MODELS) / file);
-  }
+struct Redrawn {
+  const char* file;
+  drawn::Likeness likeness{};
+};
+
+class RedrawnModels : public testing::TestWithParam<Redrawn> {};
+
+TEST_P(RedrawnModels, AreTheSameHoweverTheyAreDrawn) {
+  drawn::expectSameHoweverDrawn(std::filesystem::path(CLERESTORY_MODELS) / GetParam().file,
+                                GetParam().likeness);
 }
+
+// Reversed, the apartment's floor has a joint of 57 cm² under a door more. Divided, the apartment's door
+// frames have points less than a millimetre from those of their walls. A door frame of the duplex ends 0.63
+// mm before its wall: 0.3 cm² of a bathroom of 4.79 m².
+INSTANTIATE_TEST_SUITE_P(
+    Of, RedrawnModels,
+    testing::Values(Redrawn{"room-honeybee/single_family_home.obj"},
+                    Redrawn{"room-honeybee/model_complete_multi_zone_office.obj"},
+                    Redrawn{"room-radiance-tutorial/rt_room.obj"},
+                    Redrawn{"room-lbnl-openplan/frads_openplan.obj"},
+                    Redrawn{"room-sh3d-Studio/Studio_shell.obj"},
+                    Redrawn{"room-sh3d-2BedroomApartment/2BedroomApartment_shell.obj", {6e-4, 10}},
+                    Redrawn{"room-duplex-ifc/duplex_webifc.obj", {1e-5, 1}}),
+    [](const auto& test) { return std::filesystem::path(test.param.file).stem().string(); });
 
 // Two dwellings of seven rooms each: all panes serve one of them.
 TEST(FurtherModels, DuplexHasFourteenRooms) {

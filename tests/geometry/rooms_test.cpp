@@ -72,6 +72,51 @@ TEST(Rooms, PartAtADoor) {
   }
 }
 
+// A partition drawn as one sheet parts as well as a wall does.
+TEST(Rooms, PartAtADoorInASheet) {
+  Drawing drawing;
+  addRoomWithPane(drawing, {0, 0, 0}, {8, 3, 2.7}, {1.0, 1.0, 3.0, 2.0});
+  drawing.face({{4, 0, 0}, {4, 1, 0}, {4, 1, 2.7}, {4, 0, 2.7}});
+  drawing.face({{4, 1.9, 0}, {4, 3, 0}, {4, 3, 2.7}, {4, 1.9, 2.7}});
+  drawing.face({{4, 1, 2.05}, {4, 1.9, 2.05}, {4, 1.9, 2.7}, {4, 1, 2.7}});
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 2U);
+  for (const Room& room : building.rooms) EXPECT_NEAR(room.floorArea_m2, 12.0, 1e-6);
+  EXPECT_EQ(building.borders.size(), 1U);
+}
+
+// Where rooms meet in the open, the edges of their floors part them exactly.
+TEST(Rooms, MeetAtTheEdgesOfTheirFloors) {
+  Drawing drawing;
+  addBox(drawing, {0, 0, 0}, {6, 4, 2.7}, plaster, 0, {0});
+  const auto floor = [&](double x0, double y0, double x1, double y1, const std::string& name) {
+    drawing.face({{x0, y0, 0}, {x1, y0, 0}, {x1, y1, 0}, {x0, y1, 0}}, wood, addObject(drawing, name));
+  };
+  floor(0, 0, 6, 2.2, "living");
+  floor(0, 2.2, 1.9, 4, "kitchen");
+  floor(1.9, 2.2, 6, 4, "hall");
+  addBox(drawing, {1.85, 2.8, 0}, {1.95, 4, 2.7}, plaster, 0, {0, 1});
+  addBox(drawing, {2.9, 2.15, 0}, {6, 2.25, 2.7}, plaster, 0, {0, 1});
+  for (const Scene& scene : {drawing.scene, mirrored(drawing.scene), turned(drawing.scene, 0.3)}) {
+    const std::vector<double> areas_m2 = floorAreas(buildingOf(scene));
+    ASSERT_EQ(areas_m2.size(), 3U);
+    // Without the walls' halves: 0.05 x 1.2 and 0.05 x 3.1 m.
+    EXPECT_NEAR(areas_m2[0], 1.9 * 1.8 - 0.06, 1e-6);
+    EXPECT_NEAR(areas_m2[1], 4.1 * 1.8 - 0.06 - 0.155, 1e-6);
+    EXPECT_NEAR(areas_m2[2], 6 * 2.2 - 0.155, 1e-6);
+  }
+}
+
+// A gap that nothing is seen from at the height of people is the room's, as it is open above.
+TEST(Rooms, FloorGoesOnBetweenBookcases) {
+  Drawing drawing;
+  addRoomWithPane(drawing, {0, 0, 0}, {4, 3, 3}, {1.0, 1.0, 3.0, 2.0});
+  for (const double x : {1.0, 1.51, 2.02}) addBox(drawing, {x, 2.6, 0}, {x + 0.5, 2.98, 2.1}, wood, 0);
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 1U);
+  EXPECT_NEAR(building.rooms[0].floorArea_m2, 12.0, 1e-6);
+}
+
 TEST(Rooms, PaneBelongsToTheRoomItIsIn) {
   const Building building = buildingOf(twoRooms(0.9, 2.05).scene);
   ASSERT_EQ(building.portals.size(), 1U);

@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Floors by level: walls divide them into faces, whose areas are exact, and looks up from each say whose they
+// are.
+#include "floors.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <optional>
+
+#include <geometry/sampling.hpp>
+
+#include "floorfaces.hpp"
+
+namespace clerestory {
+namespace {
+
+constexpr float headroom_m = 1.6F;
+constexpr double levelTolerance_m = 0.002;  // faces of one floor
+constexpr double underCeiling_m = 0.12;     // free of furniture
+constexpr double reachLeast_m = 0.35;       // from somewhere on a floor to the walls
+constexpr double platformLeast_m = 0.7;     // width of a floor of another level: a sill has less
+constexpr double sliverMost_m = 0.015;      // width, as a tile has it: of joints of 7.5 mm
+constexpr double stoodOnLeast = 0.2;        // share of a surface, for it to be a floor
+constexpr double upward = 0.95;             // cosine of the steepest floor
+
+std::size_t at(std::int32_t index) {
+  return static_cast<std::size_t>(index);
+}
+
+double heightOf(const Pieces& pieces, std::uint32_t piece) {
+  double sum_m = 0.0;
+  for (const std::uint32_t corner : pieces.polygons[piece]) sum_m += pieces.points[corner].z;
+  return sum_m / static_cast<double>(pieces.polygons[piece].size());
+}
+
+/// A look up from a place on a floor.
+struct Look {
+  std::uint32_t cell;
+  std::int32_t region;  ///< -1: none, the place lies under a wall
+  const AirColumn* column;
+  bool isStoodOn;
+  bool isInNiche;  ///< nothing is free right above the floor, nor under the ceiling: a window's reveal
+};
+
+/// A part of a floor, a piece or a face, with looks from all over it.
+struct Tile {
+  std::uint32_t piece;
+  double height_m, area_m2, outline_m;
+  std::vector<Look> looks;
+
+  [[nodiscard]] double shareOf(auto&& holds) const {
+    return static_cast<double>(std::ranges::count_if(looks, holds)) / static_cast<double>(looks.size());
+  }
+  [[nodiscard]] double stoodOn_m2() const {
+    return area_m2 * shareOf([](const Look& look) { return look.isStoodOn; });
+  }
+  /// That of a square or a circle with as much area for its outline, half of a long strip's. [m]
+  [[nodiscard]] double width_m() const { return 4.0 * area_m2 / outline_m; }
+  /// Whether all of it lies at a wall.
+  [[nodiscard]] bool isNarrow(const Storey& storey) const {
+    return std::ranges::none_of(
+        looks, [&](const Look& look) { return storey.parted.toWall_m[look.cell] >= reachLeast_m; });
+  }
+};
+
+/// The region of most looks; -1 where none has one.
+std::int32_t regionOf(const Tile& tile) {
+  std::map<std::int32_t, std::size_t> votes;
+  for (const Look& look : tile.looks) ++votes[look.region];
+  const auto most = std::max_element(votes.begin(), votes.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == votes.end() ? -1 : most->first;
+}
+
+/// The surfaces at about one height that may be a floor.
+struct Level {
+  double height_m = 0.0;
+  double lowest_m = 1e300, highest_m = -1e300;  ///< of their corners: a ramp has no one height
+  std::vector<Tile> pieces;
+  std::vector<std::vector<Tile>> faces;  ///< by region
+};
+
+/// Looks up over a storey.
+class FloorLooks {
+ public:
+  FloorLooks(const Building& building, const RayScene& rays, const RoomAir& air, const Storey& storey)
+      : building_(building), rays_(rays), air_(air), storey_(storey) {}
+
+  /// By the raster, and by a ray for whether the place can be stood on; nothing beside the raster.
+  [[nodiscard]] std::optional<Look> fromPiece(const glm::dvec3& point) const {
+    const std::uint32_t cell = air_.map.cellAt(glm::dvec2(point));
+    if (cell == AirMap::none) return std::nullopt;
+    Look look = lookAt(cell, storey_.parted.region[cell], air_.map.column(cell), point.z, point.z);
+    const glm::vec3 from(point + glm::dvec3(0.0, 0.0, levelTolerance_m) - rays_.origin());
+    look.isStoodOn = !rays_.meetsAny(from, {0, 0, 1}, RayScene::Barrier::opaqueAndGlass, headroom_m);
+    return look;
+  }
+
+  /// By a ray from the place itself, over which the air belongs to the region that it sees close by: a wall
+  /// between tells them apart.
+  [[nodiscard]] std::optional<Look> fromLevel(const glm::dvec2& place, const Level& level) {
+    const std::uint32_t cell = air_.map.cellAt(place);
+    if (cell == AirMap::none) return std::nullopt;
+    columns_.push_back(airColumn(building_, rays_, air_.domain, place, air_.map.bottom_m()));
+    AirColumn& column = columns_.back();
+    std::int32_t region = -1;
+    std::erase_if(column.spans, [&](const AirSpan& span) {
+      if (!isInStorey(span)) return false;
+      const std::int32_t seen = regionSeenFrom(place, cell, span);
+      if (region < 0) region = seen;
+      return seen < 0;
+    });
+    return lookAt(cell, region, column, level.lowest_m, level.highest_m);
+  }
+
+ private:
+  /// That of the nearest cell about a place that nothing hides from it: at a person's middle or, between
+  /// furniture, under the ceiling.
+  [[nodiscard]] std::int32_t regionSeenFrom(const glm::dvec2& place, std::uint32_t cell,
+                                            const AirSpan& span) const {
+    constexpr double most_m = 1.0;
+    const double low_m = span.low_m + std::min(0.5 * (span.high_m - span.low_m), most_m);
+    const double high_m = storey_.ceiling_m - underCeiling_m;
+    const std::int32_t region = regionSeenAt({place, low_m}, cell);
+    const bool reachesUp = span.high_m > high_m && high_m > low_m;
+    return region >= 0 || !reachesUp ? region : regionSeenAt({place, high_m}, cell);
+  }
+
+  [[nodiscard]] std::int32_t regionSeenAt(const glm::dvec3& place, std::uint32_t cell) const {
+    std::array<std::pair<double, std::uint32_t>, 9> cells;
+    std::size_t count = 0;
+    const auto offer = [&](std::uint32_t other) {
+      if (other != AirMap::none && storey_.parted.region[other] >= 0)
+        cells[count++] = {glm::length(air_.map.middleOf(other) - glm::dvec2(place)), other};
+    };
+    offer(cell);
+    for (int way = 0; way < 4; ++way) {
+      const std::uint32_t next = air_.map.neighbour(cell, way);
+      offer(next);
+      if (next != AirMap::none) offer(air_.map.neighbour(next, (way + 1) % 4));
+    }
+    std::sort(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(count));
+    const glm::vec3 from(place - rays_.origin());
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t other = cells[i].second;
+      const glm::vec3 to(glm::dvec3(air_.map.middleOf(other), place.z) - rays_.origin());
+      const bool isInAir = std::ranges::any_of(air_.map.spans(other), [&](const AirSpan& air) {
+        return air.low_m < place.z && air.high_m > place.z;
+      });
+      if (isInAir && !rays_.occluded(from, to, RayScene::Barrier::opaqueAndGlass))
+        return storey_.parted.region[other];
+    }
+    return -1;
+  }
+
+  [[nodiscard]] bool isInStorey(const AirSpan& span) const {
+    return span.low_m < storey_.end_m && span.high_m > storey_.floor_m + 0.05 &&
+           span.high_m - span.low_m > 0.05;
+  }
+
+  [[nodiscard]] Look lookAt(std::uint32_t cell, std::int32_t region, const AirColumn& column, double low_m,
+                            double high_m) const {
+    Look look{cell, region, &column, false, true};
+    for (const AirSpan& span : column.spans) {
+      const bool isOnFloor = span.low_m > low_m - levelTolerance_m && span.low_m < high_m + levelTolerance_m;
+      if (isOnFloor && span.high_m - span.low_m >= headroom_m) look.isStoodOn = true;
+      if (isOnFloor || (isInStorey(span) && span.high_m > storey_.ceiling_m - underCeiling_m))
+        look.isInNiche = false;
+    }
+    return look;
+  }
+
+  const Building& building_;
+  const RayScene& rays_;
+  const RoomAir& air_;
+  const Storey& storey_;
+  std::deque<AirColumn> columns_;
+};
+
+/// Level pieces about a storey's floor, by height.
+std::vector<Tile> tilesOf(const Building& building, const RoomAir& air, const Storey& storey,
+                          const FloorLooks& looks) {
+  constexpr std::uint32_t count = 24;
+  const Pieces& pieces = building.model.pieces;
+  std::vector<Tile> tiles;
+  for (std::uint32_t piece = 0; piece < pieces.size(); ++piece) {
+    if (std::abs(pieces.normal[piece].z) < upward) continue;
+    Tile tile{piece, heightOf(pieces, piece), pieces.area_m2[piece], 0.0, {}};
+    if (std::abs(tile.height_m - storey.floor_m) > floorReach_m) continue;
+    std::vector<glm::dvec3> polygon;
+    for (const std::uint32_t corner : pieces.polygons[piece]) polygon.push_back(pieces.points[corner]);
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+      tile.outline_m += glm::length(polygon[(i + 1) % polygon.size()] - polygon[i]);
+    const std::uint32_t upper = 2 * piece + (pieces.normal[piece].z > 0.0 ? 0 : 1);
+    const Sequence sequence(0x711e);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      std::optional<Look> look =
+          looks.fromPiece(pointOnPolygon<glm::dvec3>(polygon, sequence(i, 0), sequence(i, 1)));
+      if (!look) continue;
+      if (building.sideDomain[upper] != air.domain) look->isStoodOn = false;  // under a foot, a rug
+      tile.looks.push_back(*look);
+    }
+    if (!tile.looks.empty()) tiles.push_back(std::move(tile));
+  }
+  std::stable_sort(tiles.begin(), tiles.end(),
+                   [](const Tile& a, const Tile& b) { return a.height_m < b.height_m; });
+  return tiles;
+}
+
+/// Whether something stands in the plane of an upright piece at a height: the piece itself, or what goes on
+/// over it.
+bool standsAt(const RayScene& rays, const Upright& upright, double height_m) {
+  constexpr double off_m = 0.002;
+  if (upright.high_m >= height_m) return true;
+  const glm::dvec2 middle = 0.5 * (upright.from + upright.to);
+  const auto local = [&](double side) {
+    return glm::vec3(glm::dvec3(middle + side * off_m * upright.normal, height_m) - rays.origin());
+  };
+  return rays.occluded(local(-1.0), local(1.0), RayScene::Barrier::opaqueAndGlass);
+}
+
+/// Parts of one upright plane in plan, joined where they touch.
+std::vector<PlanLine> wholeLines(const std::vector<Upright>& parts) {
+  constexpr double same_m = 1e-6;
+  if (parts.empty()) return {};
+  const Upright& first = parts.front();
+  const auto placeOf = [&](const glm::dvec2& place) {
+    return glm::dot(place - first.from, glm::dvec2(-first.normal.y, first.normal.x));
+  };
+  std::vector<PlanLine> order;
+  for (const Upright& part : parts) {
+    order.push_back({part.from, part.to});
+    if (placeOf(part.to) < placeOf(part.from)) std::swap(order.back().from_m, order.back().to_m);
+  }
+  std::sort(order.begin(), order.end(),
+            [&](const PlanLine& a, const PlanLine& b) { return placeOf(a.from_m) < placeOf(b.from_m); });
+  std::vector<PlanLine> lines;
+  for (const PlanLine& part : order) {
+    if (lines.empty() || placeOf(part.from_m) > placeOf(lines.back().to_m) + same_m) {
+      lines.push_back(part);
+    } else if (placeOf(part.to_m) > placeOf(lines.back().to_m)) {
+      lines.back().to_m = part.to_m;
+    }
+  }
+  return lines;
+}
+
+/// Where upright faces stand at about a height, and a domain's doorways are: in plan, a little longer
+/// than drawn, since walls end a little before each other.
+std::vector<PlanLine> linesOf(const Building& building, const RayScene& rays, const RoomAir& air,
+                              std::size_t storey, const Level& level) {
+  constexpr double beyondWall_m = 0.005;
+  constexpr double beyondDoorway_m = 0.15;  // a frame stands between it and the wall
+  constexpr double footMost_m = 0.02;       // above or below the floor
+  constexpr double headLeast_m = 0.1;       // above it
+  constexpr double lengthLeast_m = 1e-4;
+  std::vector<PlanLine> lines;
+  const auto add = [&](const glm::dvec2& from, const glm::dvec2& to, double beyond_m) {
+    const double length_m = glm::length(to - from);
+    if (length_m < lengthLeast_m) return;
+    const glm::dvec2 beyond = beyond_m / length_m * (to - from);
+    lines.push_back({from - beyond, to + beyond});
+  };
+  std::map<std::uint32_t, std::vector<Upright>> byPolygon;
+  for (const Upright& upright : uprightsOf(building.model.pieces))
+    byPolygon[upright.polygon].push_back(upright);
+  for (const auto& [polygon, uprights] : byPolygon) {
+    std::vector<Upright> standing;
+    for (const Upright& upright : uprights) {
+      if (upright.low_m <= level.highest_m + footMost_m &&
+          standsAt(rays, upright, level.lowest_m + headLeast_m))
+        standing.push_back(upright);
+    }
+    for (const PlanLine& line : wholeLines(standing)) add(line.from_m, line.to_m, beyondWall_m);
+  }
+  for (const Doorway& doorway : air.doorways[storey])
+    if (!doorway.alongFloors) add(glm::dvec2(doorway.from_m), glm::dvec2(doorway.to_m), beyondDoorway_m);
+  return lines;
+}
+
+/// Adds what a level has of each region. A face that lies in two for want of a line is shared out.
+void addFaces(const Building& building, const RayScene& rays, const RoomAir& air, std::size_t s,
+              FloorLooks& looks, Level& level) {
+  constexpr double allShare = 0.67;        // things on a floor hide the air from some looks
+  constexpr double sharedLeast_m2 = 0.05;  // a smaller face is of one region, or of none
+  constexpr double slitLeast_m2 = 1e-4;    // a smaller sliver is left out: rounding says what is seen from it
+  constexpr double sliverShare = 0.95;     // a joint reaches under walls, a sheet's edge stands in a room
+  const Storey& storey = air.storeys[s];
+  level.faces.resize(at(storey.parted.count));
+  std::vector<std::uint32_t> covered;
+  for (const Tile& tile : level.pieces) covered.push_back(tile.piece);
+  const std::vector<PlanLine> lines = linesOf(building, rays, air, s, level);
+  for (const FloorFace& face : floorFaces(building.model.pieces, covered, lines)) {
+    const bool isSliver = 4.0 * face.area_m2 < sliverMost_m * face.outline_m;
+    if (isSliver && face.area_m2 < slitLeast_m2) continue;
+    const auto count = static_cast<std::uint32_t>(std::clamp(24.0 + 16.0 * face.area_m2, 24.0, 400.0));
+    std::map<std::int32_t, Tile> ofRegion;
+    for (const glm::dvec2& place : face.samples(air.map.frame(), count)) {
+      const std::optional<Look> look = looks.fromLevel(place, level);
+      if (!look || look->region < 0) continue;
+      ofRegion.try_emplace(look->region, Tile{0, level.height_m, face.area_m2, face.outline_m, {}})
+          .first->second.looks.push_back(*look);
+    }
+    const bool isSmall = face.area_m2 < sharedLeast_m2;
+    const double shareLeast = isSliver ? sliverShare : isSmall ? 0.5 : 1.0 - allShare;
+    for (auto& [region, tile] : ofRegion) {
+      const double share = static_cast<double>(tile.looks.size()) / count;
+      if (share < shareLeast) continue;
+      const double niche = tile.shareOf([](const Look& look) { return look.isInNiche; });
+      if (tile.isNarrow(storey) && niche > 0.5) continue;  // a window's reveal
+      if (share <= allShare && !isSmall) {
+        tile.area_m2 *= share;
+        tile.outline_m *= share;
+      }
+      level.faces[at(region)].push_back(std::move(tile));
+    }
+  }
+}
+
+/// Levels of a storey, without surfaces that are hardly stood on: the hollow of a rug, the bottom of a
+/// bookcase.
+std::vector<Level> levelsOf(const Building& building, const RayScene& rays, const RoomAir& air, std::size_t s,
+                            FloorLooks& looks) {
+  const Pieces& pieces = building.model.pieces;
+  const std::vector<Tile> tiles = tilesOf(building, air, air.storeys[s], looks);
+  std::vector<Level> levels;
+  for (std::size_t first = 0, end = 0; first < tiles.size(); first = end) {
+    std::map<std::uint32_t, std::array<double, 2>> areaAndStoodOn_m2;  // by surface
+    while (end < tiles.size() && tiles[end].height_m - tiles[first].height_m <= levelTolerance_m) {
+      auto& [area_m2, stoodOn_m2] = areaAndStoodOn_m2[pieces.surface[tiles[end].piece]];
+      area_m2 += tiles[end].area_m2;
+      stoodOn_m2 += tiles[end].stoodOn_m2();
+      ++end;
+    }
+    Level level{.height_m = tiles[first].height_m, .pieces = {}, .faces = {}};
+    double level_m2 = 0.0;
+    for (std::size_t i = first; i < end; ++i) {
+      const auto& [area_m2, stoodOn_m2] = areaAndStoodOn_m2[pieces.surface[tiles[i].piece]];
+      if (stoodOn_m2 < stoodOnLeast * area_m2) continue;
+      level_m2 += tiles[i].area_m2;
+      level.pieces.push_back(tiles[i]);
+      for (const std::uint32_t corner : pieces.polygons[tiles[i].piece]) {
+        level.lowest_m = std::min(level.lowest_m, pieces.points[corner].z);
+        level.highest_m = std::max(level.highest_m, pieces.points[corner].z);
+      }
+    }
+    if (level_m2 < floorAreaLeast_m2) continue;
+    addFaces(building, rays, air, s, looks, level);
+    levels.push_back(std::move(level));
+  }
+  return levels;
+}
+
+/// Whether a tile of another level may be floor too: a platform and tiles of another thickness are, what lies
+/// over the floor (a bed, a rug) or under something is not.
+bool liesBeside(const Tile& tile, double floor_m) {
+  const double over = tile.shareOf([&](const Look& look) {
+    return std::ranges::any_of(look.column->treads, [&](const Tread& tread) {
+      return std::abs(tread.height_m - floor_m) <= levelTolerance_m && tread.height_m < tile.height_m;
+    });
+  });
+  const double stoodOn = tile.shareOf([](const Look& look) { return look.isStoodOn; });
+  return over <= 0.5 && stoodOn >= stoodOnLeast;
+}
+
+/// Of a storey's levels the one that most of the region can be stood on, the lower of equals, and what lies
+/// beside it.
+Floor floorOf(const std::vector<Level>& levels, std::int32_t region) {
+  const Level* main = nullptr;
+  double mostStoodOn_m2 = 0.0;
+  for (const Level& level : levels) {
+    double stoodOn_m2 = 0.0;
+    for (const Tile& face : level.faces[at(region)]) stoodOn_m2 += face.stoodOn_m2();
+    if (stoodOn_m2 <= mostStoodOn_m2) continue;
+    mostStoodOn_m2 = stoodOn_m2;
+    main = &level;
+  }
+  if (main == nullptr) return {};
+  Floor floor{.height_m = main->height_m, .pieces = {}};
+  for (const Level& level : levels) {
+    const auto isFloor = [&](const Tile& tile) { return &level == main || liesBeside(tile, main->height_m); };
+    double area_m2 = 0.0;
+    for (const Tile& face : level.faces[at(region)]) {
+      if (isFloor(face) && (&level == main || face.width_m() >= platformLeast_m)) area_m2 += face.area_m2;
+    }
+    if (&level != main && area_m2 < floorAreaLeast_m2) continue;
+    floor.area_m2 += area_m2;
+    for (const Tile& tile : level.pieces) {
+      if (regionOf(tile) == region && isFloor(tile)) floor.pieces.push_back(tile.piece);
+    }
+  }
+  return floor;
+}
+
+}  // namespace
+
+std::vector<Floor> floorsOf(const Building& building, const RayScene& rays, const RoomAir& air,
+                            std::size_t storey) {
+  FloorLooks looks(building, rays, air, air.storeys[storey]);
+  const std::vector<Level> levels = levelsOf(building, rays, air, storey, looks);
+  std::vector<Floor> floors;
+  for (std::int32_t region = 0; region < air.storeys[storey].parted.count; ++region)
+    floors.push_back(floorOf(levels, region));
+  return floors;
+}
+
+}  // namespace clerestory
