@@ -16,12 +16,14 @@ namespace {
 
 constexpr float samplesLeast = 2.0F;   // of a polygon
 constexpr float lampRaysLeast = 8.0F;  // of a luminaire
+constexpr float stripsOfSky = 0.1F;    // share of a pane that may show sky where samples have met none
 
 }  // namespace
 
 template <int K>
 PolygonLight<K>::PolygonLight(const ColumnLayout& layout, const glm::vec3& receiver, const glm::vec3& normal,
-                              std::span<const glm::vec3> polygon, std::uint64_t key, Luminance<K> luminance)
+                              std::span<const glm::vec3> polygon, std::uint64_t key, Luminance<K> luminance,
+                              float exitance_lm_m2)
     : layout_(layout),
       receiver_(receiver),
       normal_(normal),
@@ -31,7 +33,8 @@ PolygonLight<K>::PolygonLight(const ColumnLayout& layout, const glm::vec3& recei
           glm::normalize(glm::cross(polygon[1] - polygon[0], polygon[polygon.size() - 1] - polygon[0]))),
       height_m_(glm::dot(polygon[0] - receiver, polygonNormal_)),
       sequence_(key),
-      luminance_(std::move(luminance)) {}
+      luminance_(std::move(luminance)),
+      exitance_lm_m2_(exitance_lm_m2) {}
 
 template <int K>
 void PolygonLight<K>::sampleTo(std::uint32_t count) {
@@ -68,9 +71,16 @@ std::vector<PolygonLight<K>> portalsAt(const SolvedLight<K>& light, std::int32_t
     const glm::vec3 inward = world.normalOf(2 * portal.piece + (portal.frontIsInside ? 0U : 1U));
     const auto polygon = world.polygon(portal.piece);
     if (glm::dot(receiver - polygon[0], inward) <= 0.0F) continue;
+    // What a pane shows by the strips of sky between blades, which few samples may all have missed.
+    const glm::vec3 outward = glm::normalize(polygon[0] - receiver);
+    const float open_lm_m2 =
+        stripsOfSky * std::numbers::pi_v<float> *
+        world.glassOf(portal.piece).transmittance(std::abs(glm::dot(outward, inward))) *
+        world.layout.strength(light.skyLuminance(glm::vec3(outward.x, outward.y, std::abs(outward.z))));
     polygons.emplace_back(
         world.layout, receiver, normal, polygon, mixKeys(key, portal.piece),
-        [&light, &portal, receiver](const glm::vec3& p) { return light.throughPortal(portal, receiver, p); });
+        [&light, &portal, receiver](const glm::vec3& p) { return light.throughPortal(portal, receiver, p); },
+        open_lm_m2);
     if (polygons.back().formFactor() <= 0.0F) polygons.pop_back();
   }
   return polygons;
@@ -93,6 +103,33 @@ std::vector<PolygonLight<K>> emittersAt(const SolvedLight<K>& light, std::int32_
                           [&world, luminance, receiver](const glm::vec3& p) {
                             return world.visibility(receiver, p) * luminance;
                           });
+    if (polygons.back().formFactor() <= 0.0F) polygons.pop_back();
+  }
+  return polygons;
+}
+
+template <int K>
+std::vector<PolygonLight<K>> brightPartsAt(const SolvedLight<K>& light, std::int32_t domain,
+                                           const glm::vec3& receiver, const glm::vec3& normal,
+                                           std::uint64_t key) {
+  const World& world = light.world();
+  const Radiosity<K>* radiosity = light.of(domain);
+  std::vector<PolygonLight<K>> polygons;
+  if (radiosity == nullptr) return polygons;
+  const Hierarchy& tree = radiosity->tree;
+  for (const auto& [part, exitance_lm_m2] : radiosity->brightParts) {
+    const std::uint32_t side = tree.sides[tree.treeSide[part]].side;
+    if (glm::dot(receiver - tree.centre[part], tree.normal(part)) <= 0.0F) continue;
+    polygons.emplace_back(
+        world.layout, receiver, normal, tree.polygon(part), mixKeys(key, tree.key[part]),
+        [&light, &world, side, receiver](const glm::vec3& onPart) -> Columns<K> {
+          const auto hit = world.rays.nearest(receiver, glm::normalize(onPart - receiver),
+                                              RayScene::Barrier::opaqueAndGlass);
+          if (!hit || hit.side() != side) return {};
+          return (world.innerTransmittance(receiver, onPart) * std::numbers::inv_pi_v<float>)*light.exitance(
+              hit, onPart, false);
+        },
+        exitance_lm_m2);
     if (polygons.back().formFactor() <= 0.0F) polygons.pop_back();
   }
   return polygons;
@@ -156,6 +193,8 @@ DirectLight<K> directFromLamps(const World& world, std::int32_t domain, const gl
                                                      const glm::vec3&, std::uint64_t);                       \
   template std::vector<PolygonLight<K>> emittersAt<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&, \
                                                       const glm::vec3&, std::uint64_t);                      \
+  template std::vector<PolygonLight<K>> brightPartsAt<K>(const SolvedLight<K>&, std::int32_t,                \
+                                                         const glm::vec3&, const glm::vec3&, std::uint64_t); \
   template DirectLight<K> lightOf<K>(std::span<PolygonLight<K>>, DirectSamples);                             \
   template DirectLight<K> directFromLamps<K>(const World&, std::int32_t, const glm::vec3&, const glm::vec3&, \
                                              DirectSamples, std::uint64_t);

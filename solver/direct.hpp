@@ -46,8 +46,11 @@ template <int K>
 class PolygonLight {
  public:
   PolygonLight(const ColumnLayout& layout, const glm::vec3& receiver, const glm::vec3& normal,
-               std::span<const glm::vec3> polygon, std::uint64_t key, Luminance<K> luminance);
+               std::span<const glm::vec3> polygon, std::uint64_t key, Luminance<K> luminance,
+               float exitance_lm_m2 = 0.0F);
 
+  /// Light of the polygon, were nothing in its way, by the mean exitance that it was made with. [lx]
+  [[nodiscard]] float unhidden_lx() const { return formFactor_ * exitance_lm_m2_; }
   [[nodiscard]] float formFactor() const { return formFactor_; }
   [[nodiscard]] std::uint32_t size() const { return samples_.size(); }
   /// Carries the samples on to `count` in all.
@@ -63,6 +66,7 @@ class PolygonLight {
   float height_m_;  ///< of the polygon's plane over the receiver, along polygonNormal_
   Sequence sequence_;
   Luminance<K> luminance_;
+  float exitance_lm_m2_;
   EvenSamples<K> samples_;
 };
 
@@ -76,6 +80,12 @@ template <int K>
 std::vector<PolygonLight<K>> emittersAt(const SolvedLight<K>& light, std::int32_t domain,
                                         const glm::vec3& receiver, const glm::vec3& normal,
                                         std::uint64_t key);
+
+/// Bright parts of `domain` whose reflected light falls on a point, unsampled.
+template <int K>
+std::vector<PolygonLight<K>> brightPartsAt(const SolvedLight<K>& light, std::int32_t domain,
+                                           const glm::vec3& receiver, const glm::vec3& normal,
+                                           std::uint64_t key);
 
 /// Samples polygons and adds their light up.
 template <int K>

@@ -42,6 +42,14 @@ Columns<K> SolvedLight<K>::exitance(const RayScene::Hit& hit, const glm::vec3& p
 }
 
 template <int K>
+bool SolvedLight<K>::isInBrightPart(const RayScene::Hit& hit, const glm::vec3& point) const {
+  if (!isSolved(hit)) return false;
+  const Radiosity<K>& own = *of(world_.building.sideDomain[hit.side()]);
+  return !own.isInBrightPart.empty() &&
+         own.isInBrightPart[own.tree.leafAt(rootOfSide_[hit.side()], point)] != 0;
+}
+
+template <int K>
 Columns<K> SolvedLight<K>::skyLuminance(const glm::vec3& direction) const {
   Columns<K> luminance = world_.layout.template light<K>(
       world_.layout.skyColumn(), glm::dvec3(static_cast<double>(world_.sky.luminance_cd_m2(direction))));

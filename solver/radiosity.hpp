@@ -29,16 +29,24 @@ struct Plane {
   }
 };
 
+/// An element that reflects far more than others.
+struct BrightPart {
+  NodeIndex node;
+  float exitance_lm_m2;  ///< mean, of the strongest kind of light
+};
+
 /// The light of one domain after the solve.
 template <int K>
 struct Radiosity {
   Hierarchy tree;
-  std::vector<Columns<K>> irradiance_lx;   ///< #nodes; leaves hold all light received but the sun's beam
-  std::vector<Columns<K>> reflectance;     ///< #sides of the tree
-  std::vector<Columns<K>> exitance_lm_m2;  ///< #sides of the tree: own emission
-  std::vector<std::uint32_t> emitters;     ///< sides of the tree that have some
-  std::vector<Plane<K>> planes{};          ///< #nodes, or empty before `reconstruct`
-  Sunlight sunlight{};                     ///< the beam; empty without sun
+  std::vector<Columns<K>> irradiance_lx;       ///< #nodes; leaves hold all light received but the sun's beam
+  std::vector<Columns<K>> reflectance;         ///< #sides of the tree
+  std::vector<Columns<K>> exitance_lm_m2;      ///< #sides of the tree: own emission
+  std::vector<std::uint32_t> emitters;         ///< sides of the tree that have some
+  std::vector<Plane<K>> planes{};              ///< #nodes, or empty before `reconstruct`
+  Sunlight sunlight{};                         ///< the beam; empty without sun
+  std::vector<BrightPart> brightParts{};       ///< elements that points look at apart; none is within another
+  std::vector<std::uint8_t> isInBrightPart{};  ///< #nodes, or empty
 
   /// Irradiance of a point of a leaf: of its plane if there is one, else its mean.
   [[nodiscard]] Columns<K> irradianceAt(NodeIndex leaf, const glm::vec3& point) const {
@@ -79,6 +87,9 @@ class SolvedLight {
   /// unsolved.
   [[nodiscard]] Columns<K> exitance(const RayScene::Hit& hit, const glm::vec3& point,
                                     bool withEmission) const;
+
+  /// Whether the point where a ray has met a side is within a bright part.
+  [[nodiscard]] bool isInBrightPart(const RayScene::Hit& hit, const glm::vec3& point) const;
 
   /// Luminance seen outdoors along a ray that starts outside or on the outer face of a pane. [cd/m²]
   [[nodiscard]] Columns<K> outsideLuminance(const glm::vec3& from, const glm::vec3& direction) const;

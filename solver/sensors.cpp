@@ -23,11 +23,11 @@ constexpr float missedBetween = 1.0F;         // samples: of one sample's share 
 
 /// How sure light is when more samples are decided on. What all samples have missed, the reveal at the edge
 /// of what a pane shows, is not in their deviation: a few that see the sky alone would seem sure, and too
-/// bright.
+/// bright. Nor is it where few have met what is in the way of a bright part: `unhidden_lx` of it could be.
 template <int K>
-float doubtOf(const ColumnLayout& layout, const DirectLight<K>& own) {
-  const float missed_lx =
-      missedBetween * layout.strength(own.illuminance_lx) / static_cast<float>(std::max(own.rays, 1U));
+float doubtOf(const ColumnLayout& layout, const DirectLight<K>& own, float unhidden_lx = 0.0F) {
+  const float missed_lx = missedBetween * std::max(layout.strength(own.illuminance_lx), unhidden_lx) /
+                          static_cast<float>(std::max(own.rays, 1U));
   return std::hypot(own.deviation_lx, missed_lx);
 }
 
@@ -55,6 +55,7 @@ std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32
     weight *= world.innerTransmittance(from, point);
     if (!world.materialOf(hit.piece).glazing) {
       if (!light.isSolved(hit)) return std::nullopt;
+      if (!withDirect && depth == 0 && light.isInBrightPart(hit, point)) return sum;
       return sum + weight * std::numbers::inv_pi_v<float> * light.exitance(hit, point, withDirect);
     }
     const Glass& glass = world.glassOf(hit.piece);
@@ -73,7 +74,7 @@ std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32
 
 namespace {
 
-/// Light at a point from all that is neither portal nor emitter, by cosine rays.
+/// Light at a point from all that is neither portal, emitter nor bright part, by cosine rays.
 template <int K>
 class HemisphereLight {
  public:
@@ -138,40 +139,48 @@ Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::
   std::vector<PolygonLight<K>> polygons = portalsAt(light, domain, point, normal, mixKeys(key, 1));
   std::vector<PolygonLight<K>> emitters = emittersAt(light, domain, point, normal, mixKeys(key, 2));
   std::move(emitters.begin(), emitters.end(), std::back_inserter(polygons));
+  std::vector<PolygonLight<K>> bright = brightPartsAt(light, domain, point, normal, mixKeys(key, 5));
   HemisphereLight<K> hemisphere(light, domain, point, normal, mixKeys(key, 3));
 
   const DirectLight<K> fromLamps =
       directFromLamps<K>(light.world(), domain, point, normal, settings.direct, mixKeys(key, 4));
   DirectLight<K> fromPolygons = lightOf<K>(polygons, settings.direct);
+  DirectLight<K> fromBright = lightOf<K>(bright, settings.direct);
   hemisphere.sampleTo(settings.rays);
-  DirectLight<K> reflected = hemisphere.light();
+  DirectLight<K> evenly = hemisphere.light();
 
-  const float parts = static_cast<float>(polygons.size()) + 1.0F;
+  const float parts = static_cast<float>(polygons.size() + bright.size()) + 1.0F;
   for (int round = 0; round < roundsMost; ++round) {
     const float all_lx = known_lx + layout.strength(fromPolygons.illuminance_lx + fromLamps.illuminance_lx +
-                                                    reflected.illuminance_lx);
+                                                    fromBright.illuminance_lx + evenly.illuminance_lx);
     const float allowed_lx = settings.deviationMost * all_lx;
-    float doubt_lx = doubtOf(layout, reflected);
-    for (const PolygonLight<K>& polygon : polygons)
-      doubt_lx = std::hypot(doubt_lx, doubtOf(layout, polygon.light()));
+    float doubt_lx = doubtOf(layout, evenly);
+    for (const auto* own : {&polygons, &bright}) {
+      for (const PolygonLight<K>& polygon : *own)
+        doubt_lx = std::hypot(doubt_lx, doubtOf(layout, polygon.light(), polygon.unhidden_lx()));
+    }
     if (!(doubt_lx > allowed_lx)) break;
-    const auto carryOn = [&](auto& part, DirectLight<K> own) {
-      if (doubtOf(layout, own) * std::sqrt(parts) > allowed_lx && part.size() < samplesMost) {
+    const auto carryOn = [&](auto& part, DirectLight<K> own, float unhidden_lx) {
+      if (doubtOf(layout, own, unhidden_lx) * std::sqrt(parts) > allowed_lx && part.size() < samplesMost) {
         part.sampleTo(2 * part.size());
         own = part.light();
       }
       return own;
     };
     fromPolygons = {};
-    for (PolygonLight<K>& polygon : polygons) fromPolygons += carryOn(polygon, polygon.light());
-    reflected = carryOn(hemisphere, reflected);
+    for (PolygonLight<K>& polygon : polygons)
+      fromPolygons += carryOn(polygon, polygon.light(), polygon.unhidden_lx());
+    fromBright = {};
+    for (PolygonLight<K>& polygon : bright)
+      fromBright += carryOn(polygon, polygon.light(), polygon.unhidden_lx());
+    evenly = carryOn(hemisphere, evenly, 0.0F);
   }
 
   Gathered<K> result;
   result.direct_lx = fromPolygons.illuminance_lx + fromLamps.illuminance_lx + hemisphere.sky_lx();
-  result.reflected_lx = reflected.illuminance_lx - hemisphere.sky_lx();
+  result.reflected_lx = fromBright.illuminance_lx + evenly.illuminance_lx - hemisphere.sky_lx();
   result.directDeviation_lx = std::hypot(fromPolygons.deviation_lx, fromLamps.deviation_lx);
-  result.reflectedDeviation_lx = reflected.deviation_lx;
+  result.reflectedDeviation_lx = std::hypot(fromBright.deviation_lx, evenly.deviation_lx);
   return result;
 }
 

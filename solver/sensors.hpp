@@ -37,8 +37,9 @@ Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::
                    float known_lx = 0.0F);
 
 /// Luminance along a ray in the air of a domain, glass seen through and mirrored in. [cd/m²]
-/// withDirect: surfaces' own emission and what is seen through portals belong to it. Nothing where the ray
-/// ends on a side that faces no solved air: in a crack. `distance_m` receives how far the first thing met is.
+/// withDirect: surfaces' own emission, what is seen through portals and bright parts that the ray meets first
+/// belong to it. Nothing where the ray ends on a side that faces no solved air: in a crack. `distance_m`
+/// receives how far the first thing met is.
 template <int K>
 std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain,
                                          const glm::vec3& from, const glm::vec3& direction, bool withDirect,

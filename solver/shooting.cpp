@@ -12,6 +12,9 @@
 namespace clerestory {
 namespace {
 
+constexpr float stepsTogether = 6.0F;  // that may err by a whole threshold each
+constexpr float fadeLeast = 0.01F;     // of a step against the one before, for what is asked of interactions
+
 // The last interaction is the root's self link: the rest of the series in closed form, E = M / (1 -
 // reflectance) with M the mean unshot exitance; in an open domain only the share that does not escape comes
 // back each time.
@@ -99,7 +102,12 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
     }
     unshotPower_lm = transport.powerOf(unshot);
     const float after_lm = world.layout.strength(unshotPower_lm);
-    transport.handOverLinks(std::min(after_lm / before_lm, 1.0F));
+    const float share = std::min(after_lm / before_lm, 1.0F);
+    transport.handOverLinks(share);
+    // Each of the 1 / (1 - share) steps to come errs like the next one. Where a room is bright they are many,
+    // and what they err by together is much beside the little that is absorbed.
+    transport.setThreshold(solved.threshold_lm *
+                           std::min(1.0F, stepsTogether * std::max(1.0F - share, fadeLeast)));
     before_lm = std::max(after_lm, 1e-30F);
     solved.addStatistics(transport.tally(), cached, after_lm, watch.seconds());
 

@@ -8,6 +8,7 @@
 #include <import/error.hpp>
 #include <solver/solution.hpp>
 
+#include "bright.hpp"
 #include "gathering.hpp"
 #include "importance.hpp"
 #include "outside.hpp"
@@ -130,6 +131,7 @@ void solveDomains(const World& world, const Study& study, const SolveOptions& op
     solution.elements += solved.statistics.empty() ? 0 : solved.statistics.back().elements;
     solution.hierarchyBytes += grown.bytes() + grown.size() * (sizeof(Columns<K>) + sizeof(Plane<K>));
     if (solved.threshold_lm > 0.0F) reconstruct(world, solved.threshold_lm, solved.radiosity);
+    findBrightParts(world.layout, solved.radiosity);
     light.add(domain, std::move(solved.radiosity));
   }
 }

@@ -369,14 +369,18 @@ void Transport<K>::closeViews() {
 }
 
 // Where some senders are dark a view below 1 may be right; one above 1 is not, and what is too much there is
-// missing elsewhere on the same side: a leaf has more than its share of what a parent's link brought.
+// missing elsewhere on the same side: a leaf has more than its share of what a parent's link brought. It is
+// missing where views fall short by little; one that falls far short is rightly dark, as in a gap.
 template <int K>
 void Transport<K>::evenViews() {
   struct Side {
     Columns<K> excess_lm, room_lm;
   };
+  constexpr float viewLeast = 0.6F;
   std::vector<Side> sides(tree_.sides.size());
-  const auto whole = [](const Received<K>& received) { return (1.0F / received.view) * received; };
+  const auto whole = [](const Received<K>& received) {
+    return received.view < viewLeast ? received : (1.0F / received.view) * received;
+  };
   for (NodeIndex node = 0; node < tree_.size(); ++node) {
     const Received<K>& received = received_[node];
     if (!tree_.isLeaf(node) || received.view <= 0.0F) continue;

@@ -47,6 +47,8 @@ class Transport {
   [[nodiscard]] const Columns<K>& enteredPower_lm() const { return entered_lm_; }
   /// Sets what one interaction may err by, from the light that the domain starts with. [lm]
   void setFirstLight(float firstLight_lm);
+  /// Sets it for what is sent from now on. [lm]
+  void setThreshold(float threshold_lm) { interactions_.threshold_lm = threshold_lm; }
   [[nodiscard]] float threshold_lm() const { return interactions_.threshold_lm; }
 
   /// Of the last `send`.
