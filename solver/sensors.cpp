@@ -36,8 +36,9 @@ float doubtOf(const ColumnLayout& layout, const DirectLight<K>& own, float unhid
 template <int K>
 std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain,
                                          const glm::vec3& fromIn, const glm::vec3& directionIn,
-                                         bool withDirect, float* distance_m) {
+                                         LightAsked what, float* distance_m) {
   const World& world = light.world();
+  const bool withDirect = what == LightAsked::all;
   Columns<K> sum;
   float weight = 1.0F;
   glm::vec3 from = fromIn;
@@ -55,7 +56,7 @@ std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32
     weight *= world.innerTransmittance(from, point);
     if (!world.materialOf(hit.piece).glazing) {
       if (!light.isSolved(hit)) return std::nullopt;
-      if (!withDirect && depth == 0 && light.isInBrightPart(hit, point)) return sum;
+      if (what == LightAsked::reflectedEvenly && depth == 0 && light.isInBrightPart(hit, point)) return sum;
       return sum + weight * std::numbers::inv_pi_v<float> * light.exitance(hit, point, withDirect);
     }
     const Glass& glass = world.glassOf(hit.piece);
@@ -97,7 +98,7 @@ class HemisphereLight {
       const float u = sequence_(i, 0);
       const float v = sequence_(i, 1);
       const glm::vec3 direction = cosineDirection(normal_, u, v);
-      const auto seen = luminanceAlong(light_, domain_, point_, direction, false);
+      const auto seen = luminanceAlong(light_, domain_, point_, direction, LightAsked::reflectedEvenly);
       if (!seen) {
         samples_.add(u, v, 0.0F, {}, 0.0F);
         continue;
@@ -245,8 +246,8 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
 }
 
 #define CLERESTORY_INSTANTIATE(K)                                                                         \
-  template std::optional<Columns<K>> luminanceAlong<K>(const SolvedLight<K>&, std::int32_t,               \
-                                                       const glm::vec3&, const glm::vec3&, bool, float*); \
+  template std::optional<Columns<K>> luminanceAlong<K>(                                                   \
+      const SolvedLight<K>&, std::int32_t, const glm::vec3&, const glm::vec3&, LightAsked, float*);       \
   template Gathered<K> gather<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&, const glm::vec3&, \
                                  const GatherSettings&, std::uint64_t, float);                            \
   template GridValues senseGrid<K>(const SolvedLight<K>&, const SensorGrid&, const GatherSettings&, double);

@@ -36,13 +36,19 @@ Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::
                    const glm::vec3& normal, const GatherSettings& settings, std::uint64_t key,
                    float known_lx = 0.0F);
 
+/// What of the light along a ray is asked for.
+enum class LightAsked {
+  all,
+  reflected,       ///< without surfaces' own emission and what is seen through portals
+  reflectedEvenly  ///< without bright parts that the ray meets first, too
+};
+
 /// Luminance along a ray in the air of a domain, glass seen through and mirrored in. [cd/m²]
-/// withDirect: surfaces' own emission, what is seen through portals and bright parts that the ray meets first
-/// belong to it. Nothing where the ray ends on a side that faces no solved air: in a crack. `distance_m`
-/// receives how far the first thing met is.
+/// Nothing where the ray ends on a side that faces no solved air: in a crack. `distance_m` receives how far
+/// the first thing met is.
 template <int K>
 std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain,
-                                         const glm::vec3& from, const glm::vec3& direction, bool withDirect,
+                                         const glm::vec3& from, const glm::vec3& direction, LightAsked what,
                                          float* distance_m = nullptr);
 
 /// Values of a grid's sensors.

@@ -731,7 +731,8 @@ class Picture {
   /// What is seen of glass, and beyond it or where there is nothing.
   [[nodiscard]] glm::dvec3 openSeen(const Look& look) const {
     if (domain_ < 0) return {};
-    Columns<K> seen = luminanceAlong(light_, domain_, eye_, look.direction, true).value_or(Columns<K>{});
+    Columns<K> seen =
+        luminanceAlong(light_, domain_, eye_, look.direction, LightAsked::all).value_or(Columns<K>{});
     if (look.hit || world_.building.domains[static_cast<std::size_t>(domain_)].open)
       seen += world_.layout.template light<K>(world_.layout.sunColumn(),
                                               glm::dvec3(sunDiscLuminance(world_, eye_, look.direction)));
@@ -813,7 +814,7 @@ class Picture {
 
 PictureSettings picturesFor(double accuracy) {
   const double finer = 0.05 / accuracy;  // 1 at the standard accuracy
-  return {static_cast<std::uint32_t>(std::clamp(1024.0 * finer, 256.0, 4096.0)),
+  return {static_cast<std::uint32_t>(std::clamp(512.0 * finer, 128.0, 4096.0)),
           static_cast<float>(96.0 * finer), static_cast<float>(std::clamp(0.6 * accuracy, 0.01, 0.06))};
 }
 
