@@ -34,26 +34,49 @@ Columns<K> meanLuminance(const SolvedLight<K>& light, const Portal& portal, cons
   return (1.0F / static_cast<float>(raysOfPortal)) * sum;
 }
 
+/// Mean luminance of a bright part. [cd/m²]
+template <int K>
+Columns<K> meanLuminance(const SolvedLight<K>& light, std::uint32_t side, std::span<const glm::vec3> polygon,
+                         std::uint64_t key) {
+  constexpr std::uint32_t points = 64;
+  const Sequence sequence(key);
+  const RayScene::Hit hit{side / 2, 0.0F, side % 2 == 0};
+  Columns<K> sum;
+  for (std::uint32_t i = 0; i < points; ++i)
+    sum += light.exitance(hit, pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1)), false);
+  return (std::numbers::inv_pi_v<float> / static_cast<float>(points)) * sum;
+}
+
 }  // namespace
 
 template <int K>
 DirectField<K>::DirectField(const SolvedLight<K>& light, std::int32_t domain)
     : light_(light), world_(light.world()), domain_(domain) {
-  const auto add = [&](std::uint32_t side, const Portal* portal, const Columns<K>& luminance_cd_m2) {
-    const float strength = world_.layout.strength(luminance_cd_m2);
-    if (!(strength > 0.0F)) return;
-    shiners_.push_back({world_.polygon(side / 2), world_.normalOf(side), portal, mixKeys(0xd1f, side),
-                        luminance_cd_m2, strength});
+  const auto add = [&](Shiner shiner) {
+    shiner.strength = world_.layout.strength(shiner.luminance_cd_m2);
+    if (shiner.strength > 0.0F) shiners_.push_back(shiner);
   };
   for (const Portal& portal : world_.building.portals) {
     if (portal.inside != domain) continue;
     const std::uint32_t side = 2 * portal.piece + (portal.frontIsInside ? 0U : 1U);
-    add(side, &portal, meanLuminance(light, portal, world_.normalOf(side)));
+    const glm::vec3 inward = world_.normalOf(side);
+    add({world_.polygon(portal.piece), inward, side, &portal, false, mixKeys(0xd1f, side),
+         meanLuminance(light, portal, inward), 0.0F});
   }
   const Radiosity<K>* radiosity = light.of(domain);
-  if (radiosity == nullptr || !world_.layout.electric) return;
-  for (const std::uint32_t i : radiosity->emitters)
-    add(radiosity->tree.sides[i].side, nullptr, std::numbers::inv_pi_v<float> * radiosity->exitance_lm_m2[i]);
+  if (radiosity == nullptr) return;
+  const Hierarchy& tree = radiosity->tree;
+  for (const std::uint32_t i : radiosity->emitters) {
+    const std::uint32_t side = tree.sides[i].side;
+    add({world_.polygon(side / 2), tree.sides[i].normal, side, nullptr, false, mixKeys(0xd1f, side),
+         std::numbers::inv_pi_v<float> * radiosity->exitance_lm_m2[i], 0.0F});
+  }
+  for (const BrightPart& part : radiosity->brightParts) {
+    const std::uint32_t side = tree.sides[tree.treeSide[part.node]].side;
+    const std::uint64_t key = mixKeys(0xd20, tree.key[part.node]);
+    add({tree.polygon(part.node), tree.normal(part.node), side, nullptr, true, key,
+         meanLuminance(light, side, tree.polygon(part.node), key), 0.0F});
+  }
 }
 
 template <int K>
@@ -89,14 +112,14 @@ Columns<K> DirectField<K>::unhidden(const glm::vec3& point, const glm::vec3& nor
 template <int K>
 void DirectField<K>::sample(std::vector<Part>& parts, std::span<const std::uint32_t> counts,
                             const glm::vec3& point, const glm::vec3& normal, std::uint64_t key) const {
-  std::vector<Probe> toPortals;
-  std::vector<Probe> toEmitters;
-  std::vector<RayScene::Segment> portalRays;
-  std::vector<RayScene::Segment> emitterRays;
+  Probes toPortals;
+  Probes toEmitters;
+  Probes toBrightParts;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     Part& part = parts[p];
     if (counts[p] <= part.rays) continue;
     const Shiner& shiner = *part.shiner;
+    Probes& probes = shiner.portal != nullptr ? toPortals : shiner.isBrightPart ? toBrightParts : toEmitters;
     const Sequence sequence(mixKeys(key, shiner.key));
     const float height_m = glm::dot(shiner.polygon[0] - point, shiner.inward);
     std::optional<SphericalPolygon> seen;
@@ -120,29 +143,46 @@ void DirectField<K>::sample(std::vector<Part>& parts, std::span<const std::uint3
       }
       if (!(weight > 0.0F)) continue;
       part.weights += weight;
-      (shiner.portal != nullptr ? toPortals : toEmitters).push_back({p, weight});
-      (shiner.portal != nullptr ? portalRays : emitterRays).push_back({point, onPolygon});
+      probes.part.push_back(p);
+      probes.weight.push_back(weight);
+      probes.ray.push_back({point, onPolygon});
     }
     part.rays = counts[p];
   }
-  const auto add = [&](const Probe& probe, const Columns<K>& luminance) {
-    Part& part = parts[probe.part];
+  const auto add = [&](const Probes& probes, std::size_t i, const Columns<K>& luminance) {
+    Part& part = parts[probes.part[i]];
+    const float weight = probes.weight[i];
     const float strength = world_.layout.strength(luminance);
-    part.sum += probe.weight * luminance;
-    part.strengths += probe.weight * strength;
-    part.squares += probe.weight * strength * strength;
+    part.sum += weight * luminance;
+    part.strengths += weight * strength;
+    part.squares += weight * strength * strength;
   };
-  std::vector<std::uint8_t> blocked(std::max(portalRays.size(), emitterRays.size()));
-  world_.rays.occluded(portalRays, RayScene::Barrier::opaque, std::span(blocked).first(portalRays.size()));
-  for (std::size_t i = 0; i < toPortals.size(); ++i) {
-    if (blocked[i] != 0) continue;
-    add(toPortals[i], light_.behindPortal(*parts[toPortals[i].part].shiner->portal, point, portalRays[i].to));
+  const auto shinerOf = [&](const Probes& probes, std::size_t i) -> const Shiner& {
+    return *parts[probes.part[i]].shiner;
+  };
+  std::vector<std::uint8_t> blocked(std::max(toPortals.ray.size(), toEmitters.ray.size()));
+  world_.rays.occluded(toPortals.ray, RayScene::Barrier::opaque,
+                       std::span(blocked).first(toPortals.ray.size()));
+  for (std::size_t i = 0; i < toPortals.ray.size(); ++i) {
+    if (blocked[i] == 0)
+      add(toPortals, i, light_.behindPortal(*shinerOf(toPortals, i).portal, point, toPortals.ray[i].to));
   }
-  std::vector<float> visible(emitterRays.size());
-  world_.visibility(emitterRays, std::span(blocked).first(emitterRays.size()), visible);
-  for (std::size_t i = 0; i < toEmitters.size(); ++i) {
-    if (visible[i] > 0.0F) add(toEmitters[i], visible[i] * parts[toEmitters[i].part].shiner->luminance_cd_m2);
+  std::vector<float> visible(toEmitters.ray.size());
+  world_.visibility(toEmitters.ray, std::span(blocked).first(toEmitters.ray.size()), visible);
+  for (std::size_t i = 0; i < toEmitters.ray.size(); ++i) {
+    if (visible[i] > 0.0F) add(toEmitters, i, visible[i] * shinerOf(toEmitters, i).luminance_cd_m2);
   }
+  for (std::size_t i = 0; i < toBrightParts.ray.size(); ++i)
+    add(toBrightParts, i, seenOfBrightPart(shinerOf(toBrightParts, i), toBrightParts.ray[i]));
+}
+
+template <int K>
+Columns<K> DirectField<K>::seenOfBrightPart(const Shiner& shiner, const RayScene::Segment& ray) const {
+  const auto hit =
+      world_.rays.nearest(ray.from, glm::normalize(ray.to - ray.from), RayScene::Barrier::opaqueAndGlass);
+  if (!hit || hit.side() != shiner.side) return {};
+  return (world_.innerTransmittance(ray.from, ray.to) * std::numbers::inv_pi_v<float>)*light_.exitance(
+      hit, ray.to, false);
 }
 
 // Even points miss the area beyond an edge by less than random ones: n^(-3/4) in two dimensions. What all of

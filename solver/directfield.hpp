@@ -10,7 +10,7 @@
 
 namespace clerestory {
 
-/// All that shines on the surfaces of a domain: its portals, its emitting sides and its luminaires.
+/// All that shines on the surfaces of a domain: its portals, emitting sides, bright parts and luminaires.
 template <int K>
 class DirectField {
  public:
@@ -31,9 +31,11 @@ class DirectField {
   struct Shiner {
     std::span<const glm::vec3> polygon;
     glm::vec3 inward;
-    const Portal* portal;  ///< null: an emitting side
+    std::uint32_t side;
+    const Portal* portal;  ///< where it is one
+    bool isBrightPart;     ///< of a side that does not emit
     std::uint64_t key;
-    Columns<K> luminance_cd_m2;  ///< of a portal: mean over its area and directions by cosine
+    Columns<K> luminance_cd_m2;  ///< mean over its area, of a portal over directions by cosine too
     float strength;              ///< of that luminance
   };
   /// A shiner as a point has sampled it.
@@ -44,15 +46,17 @@ class DirectField {
     Columns<K> sum;
     float weights = 0.0F, strengths = 0.0F, squares = 0.0F;
   };
-  /// A ray to be cast, of one of the parts.
-  struct Probe {
-    std::size_t part;
-    float weight;
+  /// Rays to be cast to one kind of shiners.
+  struct Probes {
+    std::vector<std::size_t> part;
+    std::vector<float> weight;
+    std::vector<RayScene::Segment> ray;
   };
 
   [[nodiscard]] std::vector<Part> partsAt(const glm::vec3& point, const glm::vec3& normal) const;
   void sample(std::vector<Part>& parts, std::span<const std::uint32_t> counts, const glm::vec3& point,
               const glm::vec3& normal, std::uint64_t key) const;
+  [[nodiscard]] Columns<K> seenOfBrightPart(const Shiner& shiner, const RayScene::Segment& ray) const;
   [[nodiscard]] DirectLight<K> lightOf(const Part& part) const;
 
   const SolvedLight<K>& light_;

@@ -20,6 +20,7 @@ constexpr float offPlaneMost = 0.05F;  // of its radius
 constexpr float sameFacing = 0.95F;    // cosine between normals
 constexpr float slopeTie = 0.05F;      // of the squared radii
 constexpr std::uint32_t raysFirst = 64;
+constexpr float unevenMost = 8.0F;  // times as many rays, at most
 constexpr float evenVariance =
     1.0F;  // of what a record sees, by its squared mean; above it, it asks for more rays
 
@@ -52,7 +53,8 @@ IrradianceRecord<K> irradianceRecord(const SolvedLight<K>& light, std::int32_t d
     for (std::uint32_t i = first; i < last; ++i) {
       const glm::vec3 direction = cosineDirection(normal, sequence(i, 0), sequence(i, 1));
       float distance_m = 0.0F;
-      const auto seen = luminanceAlong(light, domain, from, direction, LightAsked::reflected, &distance_m);
+      const auto seen =
+          luminanceAlong(light, domain, from, direction, LightAsked::reflectedEvenly, &distance_m);
       nearness += 1.0F / std::max(distance_m, 1e-3F);
       if (!seen) continue;
       sum += *seen;
@@ -68,9 +70,10 @@ IrradianceRecord<K> irradianceRecord(const SolvedLight<K>& light, std::int32_t d
   const float mean = layout.strength(sum) / std::max(counted, 1.0F);
   const float variance = squares / std::max(counted, 1.0F) - mean * mean;
   const float unevenness = mean > 0.0F ? variance / (evenVariance * mean * mean) : 1.0F;
-  const float wanted = static_cast<float>(raysFirst) * share * share * std::clamp(unevenness, 1.0F, 4.0F);
-  const std::uint32_t rays = static_cast<std::uint32_t>(
-      std::clamp(wanted, static_cast<float>(raysFirst), static_cast<float>(raysMost)));
+  const float most = static_cast<float>(raysMost);
+  const float wanted = std::min(static_cast<float>(raysFirst) * share * share, 0.5F * most) *
+                       std::clamp(unevenness, 1.0F, unevenMost);
+  const auto rays = static_cast<std::uint32_t>(std::clamp(wanted, static_cast<float>(raysFirst), most));
   castTo(raysFirst, rays);
   const Columns<K> irradiance = counted > 0.0F ? (std::numbers::pi_v<float> / counted) * sum : Columns<K>{};
   return {point, normal, domain, radiusAfter(rays), irradiance};

@@ -814,7 +814,7 @@ class Picture {
 
 PictureSettings picturesFor(double accuracy) {
   const double finer = 0.05 / accuracy;  // 1 at the standard accuracy
-  return {static_cast<std::uint32_t>(std::clamp(512.0 * finer, 128.0, 4096.0)),
+  return {static_cast<std::uint32_t>(std::clamp(1024.0 * finer, 256.0, 4096.0)),
           static_cast<float>(96.0 * finer), static_cast<float>(std::clamp(0.6 * accuracy, 0.01, 0.06))};
 }
 

@@ -14,6 +14,7 @@
 #include <geometry/parallel.hpp>
 #include <geometry/sampling.hpp>
 
+#include "bright.hpp"
 #include "camera.hpp"
 #include "outside.hpp"
 #include "reconstruction.hpp"
@@ -61,6 +62,7 @@ void solveInto(SolvedLight<K>& light, const Study& study) {
     LinkCache cache(std::size_t{16} << 20);
     SolvedDomain<K> solved = shootingHR(light, domain, std::move(tree), settings, cache);
     if (solved.threshold_lm > 0.0F) reconstruct(world, solved.threshold_lm, solved.radiosity);
+    findBrightParts(world.layout, solved.radiosity);
     light.add(domain, std::move(solved.radiosity));
   }
 }

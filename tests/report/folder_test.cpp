@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A report is there whole or not at all, and never in the place of something else.
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "fake.hpp"
 
@@ -51,6 +52,66 @@ TEST(Folder, HasTheSameBytesTwice) {
     ++files;
   }
   EXPECT_EQ(files, 16u);
+}
+
+/// Whether a spreadsheet would take a field of a table's text for a formula. Numbers may be negative.
+bool holdsFormula(const std::string& csv) {
+  bool isQuoted = false;
+  char before = '\n';
+  for (std::size_t i = 0; i < csv.size(); ++i) {
+    const char own = csv[i];
+    const bool begins = (!isQuoted && (before == '\n' || before == ',')) ||
+                        (isQuoted && before == '"' && i > 1 && (csv[i - 2] == ',' || csv[i - 2] == '\n'));
+    const bool isNumber = own == '-' && i + 1 < csv.size() && csv[i + 1] >= '0' && csv[i + 1] <= '9';
+    if (begins && !isNumber && std::string("=+-@\t").find(own) != std::string::npos) return true;
+    if (own == '"') isQuoted = !isQuoted;
+    before = own;
+  }
+  return false;
+}
+
+// A model named as a script and a room named as a formula, everywhere that a name may stand.
+TEST(Folder, NamesDoNoHarmInAnyFile) {
+  const std::string script = "<script>alert(1)</script>";
+  const std::string formula = "=cmd()";
+  const fake::TemporaryFolder folder;
+  fake::Case made = fake::office();
+  made.study.modelFileAsWritten = script + ".obj";
+  made.building.rooms[0].name = formula;
+  made.building.rooms[1].name = script;
+  made.building.grids[0].name = script;
+  made.building.grids[1].name = formula;
+  made.study.views[0].name = script;
+  made.building.model.surfaces[0].name = formula;
+  made.building.model.surfaces[1].name = script;
+  for (Material& material : made.building.model.materials) material.name = formula;
+  made.diagnoses.push_back({formula, script, script, 1});
+  writeReport(folder.path() / "r", made.input());
+  std::size_t tables = 0;
+  for (const auto& entry : fs::directory_iterator(folder.path() / "r")) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_EQ(name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_"),
+              std::string::npos)
+        << name;
+    EXPECT_NE(name[0], '-');
+    const std::string content = contentOf(entry.path());
+    if (entry.path().extension() == ".csv") {
+      EXPECT_FALSE(holdsFormula(content)) << name;
+      ++tables;
+    } else if (entry.path().extension() == ".html") {
+      EXPECT_EQ(content.find(script), std::string::npos);
+    } else if (entry.path().extension() == ".json") {
+      EXPECT_TRUE(nlohmann::json::accept(content)) << name;
+    }
+  }
+  EXPECT_EQ(tables, 4U);
+  EXPECT_TRUE(holdsFormula("a,b\r\n1,=cmd()\r\n") && holdsFormula("a\n\"@x\"\n"));
+  const nlohmann::json study = nlohmann::json::parse(contentOf(folder.path() / "r" / "study.json"));
+  EXPECT_EQ(study.at("rooms").at(0).at("name"), formula);
+  const std::string glb = contentOf(folder.path() / "r" / "scene.glb");
+  EXPECT_TRUE(nlohmann::json::accept(glb.substr(20, static_cast<unsigned char>(glb[12]) +
+                                                        256U * static_cast<unsigned char>(glb[13]) +
+                                                        65536U * static_cast<unsigned char>(glb[14]))));
 }
 
 TEST(Folder, NamesOfFilesAreSafeAndUnique) {
