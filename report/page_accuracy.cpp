@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "escape.hpp"
 #include "metrics.hpp"
@@ -180,6 +181,45 @@ std::string energyTable(const ReportInput& input) {
                    rows);
 }
 
+/// What of the model was computed, what was not, and what the figures took.
+std::string modelledList(const ReportInput& input) {
+  const CleanupCounts& counts = input.building.model.counts;
+  const Solution& solution = input.solution;
+  std::set<std::int32_t> solved;
+  std::uint64_t links = 0;
+  for (const IterationStatistics& step : solution.iterations) {
+    solved.insert(step.domain);
+    links += step.linksRequired;
+  }
+  std::uint64_t dark = 0;
+  std::uint64_t unasked = 0;
+  for (std::size_t d = 0; d < input.building.domains.size(); ++d) {
+    const bool isLit = input.building.domains[d].lit;
+    dark += isLit ? 0 : 1;
+    unasked += isLit && !solved.contains(static_cast<std::int32_t>(d)) ? 1 : 0;
+  }
+  std::uint64_t figures = solution.surfaces.size();
+  for (const GridValues& grid : solution.grids) figures += grid.sensors.size();
+  std::string html = "<h3>What was modelled</h3>\n<ul>\n<li>" + count(counts.facesRead) +
+                     " faces were read; " + count(counts.polygons) + " planar polygons, in " +
+                     count(input.building.model.pieces.size()) +
+                     " convex pieces, are left of them.</li>\n<li>" + count(counts.degenerateFaces) +
+                     " faces without area and " + count(counts.duplicateFaces) +
+                     " drawn twice were dropped, which takes no light away; " + count(counts.pointsWelded) +
+                     " points were moved onto others, by 1 mm at most.</li>\n<li>The light has " +
+                     count(solution.elements) + " elements with " + std::to_string(solution.columns) +
+                     (solution.columns == 1 ? " value each.</li>\n" : " values each.</li>\n");
+  if (figures > 0) {
+    html += "<li>" + count(links) + " links were made, " +
+            roundedNumber(static_cast<double>(links) / static_cast<double>(figures)) + " for each of the " +
+            count(figures) + " figures of sensors and surfaces.</li>\n";
+  }
+  html += "<li>Volumes of air left out: " + count(dark) + " that no light reaches, " + count(unasked) +
+          " that nothing asks for.</li>\n<li>Neglected: light that leaves a room through its glazing, is "
+          "reflected outside and comes back.</li>\n</ul>\n";
+  return html;
+}
+
 }  // namespace
 
 std::string accuracySection(const ReportInput& input) {
@@ -194,11 +234,7 @@ std::string accuracySection(const ReportInput& input) {
   html += convergenceChart(input);
   if (!input.solution.iterations.empty()) html += iterationTable(input.solution);
   if (!input.solution.balances.empty()) html += energyTable(input);
-  html +=
-      "<p class=\"note\">The solution holds " + count(input.solution.elements) + " elements with " +
-      std::to_string(input.solution.columns) +
-      (input.solution.columns == 1 ? " value each. " : " values each. ") +
-      "Light that leaves a room through its glazing, is reflected outside and comes back is neglected.</p>\n";
+  html += modelledList(input);
   return html + "</section>\n";
 }
 
