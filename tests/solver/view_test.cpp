@@ -96,6 +96,24 @@ TEST(View, FurnaceIsOfOneLuminance) {
     ASSERT_NEAR(pixel.g, expected_cd_m2, 0.005 * expected_cd_m2);
 }
 
+/// Luminance times cosine, added up over a fisheye of 180 degrees that looks up and fills a square. [lx]
+double lightFromAbove_lx(const LuminanceImage& fisheye) {
+  constexpr double pi = std::numbers::pi;
+  const double middle = 0.5 * fisheye.width;
+  const double pixel = pi / fisheye.width;
+  double sum_lx = 0.0;
+  for (int y = 0; y < fisheye.height; ++y) {
+    for (int x = 0; x < fisheye.width; ++x) {
+      const double angle = std::hypot(x + 0.5 - middle, y + 0.5 - middle) * pixel;
+      if (angle > 0.5 * pi) continue;
+      const auto luminance =
+          static_cast<double>(fisheye.pixels_cd_m2[static_cast<std::size_t>(fisheye.width * y + x)].g);
+      sum_lx += luminance * std::cos(angle) * std::sin(angle) / angle * pixel * pixel;
+    }
+  }
+  return sum_lx;
+}
+
 // Luminance times cosine, added up over what a fisheye that looks up sees, is the illuminance of a sensor at
 // its eye; so it is over the upper half of a panorama.
 TEST(View, FisheyeAndPanoramaHoldTheLightThatASensorGets) {
@@ -125,17 +143,7 @@ TEST(View, FisheyeAndPanoramaHoldTheLightThatASensorGets) {
   const double sensor_lx = solution.grids.at(0).sensors.at(0).illuminance_lx;
 
   constexpr double pi = std::numbers::pi;
-  double seen_lx = 0.0;
-  for (int y = 0; y < 180; ++y) {
-    for (int x = 0; x < 180; ++x) {
-      const double angle = std::hypot(x + 0.5 - 90.0, y + 0.5 - 90.0) * pi / 180.0;
-      if (angle > 0.5 * pi) continue;
-      const glm::vec3& pixel = solution.views[0].pixels_cd_m2[static_cast<std::size_t>(180 * y + x)];
-      seen_lx +=
-          static_cast<double>(pixel.g) * std::cos(angle) * std::sin(angle) / angle * pi / 180.0 * pi / 180.0;
-    }
-  }
-  EXPECT_NEAR(seen_lx, sensor_lx, 0.03 * sensor_lx);
+  EXPECT_NEAR(lightFromAbove_lx(solution.views[0]), sensor_lx, 0.03 * sensor_lx);
 
   double around_lx = 0.0;
   for (int y = 0; y < 80; ++y) {
@@ -147,6 +155,36 @@ TEST(View, FisheyeAndPanoramaHoldTheLightThatASensorGets) {
     }
   }
   EXPECT_NEAR(around_lx, sensor_lx, 0.03 * sensor_lx);
+}
+
+// A patch of sun on the floor lights all else: what a fisheye sees of that is what a sensor in the shade
+// gets, whose gather reads the solution where the picture looks at the patch anew.
+TEST(View, SurfacesAreLitByAPatchOfSun) {
+  Drawing drawing;
+  addRoomWithPane(drawing, {0, 0, 0}, {4, 6, 3}, {0.5, 1.0, 3.5, 2.5});
+  Study study;
+  study.grids = {};
+  study.sky.cieType = 12;
+  study.sky.diffuseHorizontal_lx = 8000.0;
+  study.sky.directNormal_lx = 70000.0;
+  study.sky.sun_deg = glm::dvec2(45.0, 180.0);
+  ViewSettings fisheye;
+  fisheye.projection = Projection::fisheye;
+  fisheye.eye_m = {2.0, 5.0, 0.9};
+  fisheye.target_m = {2.0, 5.0, 2.0};
+  fisheye.up = {0.0, 1.0, 0.0};
+  fisheye.fieldOfView_deg = 180.0;
+  fisheye.size_px = {180, 180};
+  study.views = {fisheye};
+  Building building = buildingOf(drawing.scene, study);
+  SensorGrid grid;
+  grid.points = {fisheye.eye_m};
+  grid.normals = {{0.0, 0.0, 1.0}};
+  building.grids = {grid};
+  const Solution solution = solve(building, study, {});
+  const SensorValue& sensor = solution.grids.at(0).sensors.at(0);
+  ASSERT_GT(sensor.reflected_lx, 5.0 * sensor.direct_lx);
+  EXPECT_NEAR(lightFromAbove_lx(solution.views[0]), sensor.illuminance_lx, 0.03 * sensor.illuminance_lx);
 }
 
 // Who looks at the sun through a pane sees its disc: 0.53 deg across, and of as much light as the glass lets
