@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The air of one domain in plan: a raster of columns, each with its free heights, found by upright rays.
+// The air of one domain in plan: a raster of columns, each with its free heights.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -9,7 +9,7 @@
 #include <geometry/building.hpp>
 #include <geometry/rays.hpp>
 
-#include "planframe.hpp"
+#include "stacks.hpp"
 
 namespace clerestory {
 
@@ -44,12 +44,12 @@ class AirMap {
   AirMap(const Building& building, const RayScene& rays, std::int32_t domain,
          std::span<const std::uint32_t> sides);
 
-  [[nodiscard]] double cell_m() const { return cell_m_; }
-  [[nodiscard]] std::uint32_t columns() const { return columns_; }
-  [[nodiscard]] std::uint32_t rows() const { return rows_; }
-  [[nodiscard]] std::uint32_t size() const { return columns_ * rows_; }
+  [[nodiscard]] double cell_m() const { return raster_.cell_m; }
+  [[nodiscard]] std::uint32_t columns() const { return raster_.columns; }
+  [[nodiscard]] std::uint32_t rows() const { return raster_.rows; }
+  [[nodiscard]] std::uint32_t size() const { return raster_.size(); }
   [[nodiscard]] std::uint32_t cellAt(const glm::dvec2& place) const;  ///< none outside the raster
-  [[nodiscard]] glm::dvec2 middleOf(std::uint32_t cell) const;
+  [[nodiscard]] glm::dvec2 middleOf(std::uint32_t cell) const { return raster_.middleOf(cell); }
   /// The neighbour east (0), north (1), west (2) or south (3) of a cell in the frame; none at the rim.
   [[nodiscard]] std::uint32_t neighbour(std::uint32_t cell, int way) const;
   /// The middle of the edge to that neighbour.
@@ -58,16 +58,16 @@ class AirMap {
   [[nodiscard]] const AirColumn& column(std::uint32_t cell) const { return columnOf_[cell]; }
   [[nodiscard]] const std::vector<AirSpan>& spans(std::uint32_t cell) const { return column(cell).spans; }
   [[nodiscard]] const std::vector<Tread>& treads(std::uint32_t cell) const { return column(cell).treads; }
-  [[nodiscard]] const PlanFrame& frame() const { return frame_; }
+  /// False where nothing stands between a cell's places at any height, but level pieces.
+  [[nodiscard]] bool mayStop(std::uint32_t cell) const { return mayStop_[cell] != 0; }
+  [[nodiscard]] const PlanFrame& frame() const { return raster_.frame; }
   [[nodiscard]] double bottom_m() const { return bottom_m_; }
 
  private:
-  PlanFrame frame_;
-  glm::dvec2 low_{0.0};  // in the frame
+  PlanRaster raster_;
   double bottom_m_ = 0.0;
-  double cell_m_ = 0.0;
-  std::uint32_t columns_ = 0, rows_ = 0;
-  std::vector<AirColumn> columnOf_;  // #cells
+  std::vector<AirColumn> columnOf_;    // #cells
+  std::vector<std::uint8_t> mayStop_;  // #cells
 };
 
 }  // namespace clerestory

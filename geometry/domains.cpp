@@ -5,7 +5,8 @@
 #include "domains.hpp"
 
 #include <algorithm>
-#include <bitset>
+#include <array>
+#include <limits>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -28,7 +29,8 @@ constexpr double worthCutting_m2 = 3.0;  // surface of an air for which a side i
 constexpr std::uint32_t raysOfPoint = 6;
 constexpr std::uint32_t pointsOfSide = 3;  // at least; one where a side is smaller than an opening
 constexpr double pointsOfModel = 4000.0;   // further ones, shared out by area
-constexpr std::uint32_t pointsOfSideMax = 256;
+constexpr std::size_t pointsOfSideMax = 256;
+constexpr std::size_t nearPlaces = 16;     // that a way is looked for to from a point on a side
 constexpr std::uint32_t closerRays = 32;  // of a closer look
 constexpr std::uint32_t closerRaysOfSmall = 8;
 constexpr std::uint32_t agreeingRays = 8;  // of these, where all agree with the side's points
@@ -245,7 +247,7 @@ class AirSurvey {
     const double share = pieces_.area_m2[side / 2] / std::max(total_m2, 1e-9);
     const auto further = static_cast<std::uint32_t>(pointsOfModel * share);
     const std::uint32_t least = isSmallerThanOpening(localPolygon(side / 2)) ? 1 : pointsOfSide;
-    return std::min(least + further, pointsOfSideMax);
+    return std::min(least + further, std::uint32_t{pointsOfSideMax});
   }
 
   void placeAll(const AirSurvey* earlier, const SameSides* same) {
@@ -321,26 +323,22 @@ class AirSurvey {
     });
   }
 
-  /// The place of `side` that shares the air of a point on it, the nearest one that no surface keeps it from;
-  /// nowhere if the way to each is barred.
+  /// The place of `side` that shares the air of a point on it: of the nearest ones the first that no surface
+  /// keeps it from; nowhere if the way to each is barred.
   [[nodiscard]] std::uint32_t placeNear(std::uint32_t side, const glm::vec3& point, float height_m) const {
-    std::bitset<pointsOfSideMax> barred;
     const std::span<const Place> places = placesOf(side);
-    for (std::size_t round = 0; round < places.size(); ++round) {
-      std::size_t best = 0;
-      float least = std::numeric_limits<float>::infinity();
-      for (std::size_t i = 0; i < places.size(); ++i) {
-        const glm::vec3 way = places[i].point - point;
-        const float square = glm::dot(way, way);
-        if (square >= least || barred[i]) continue;
-        least = square;
-        best = i;
-      }
-      const glm::vec3 up = height_m * places[best].normal;
-      if (isOpen(point + up, places[best].point + up)) {
-        return firstPlace_[side] + static_cast<std::uint32_t>(best);
-      }
-      barred.set(best);
+    std::array<float, pointsOfSideMax> square;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const glm::vec3 way = places[i].point - point;
+      square[i] = glm::dot(way, way);
+    }
+    const auto end = square.begin() + static_cast<std::ptrdiff_t>(places.size());
+    for (std::size_t tried = 0; tried < std::min(places.size(), nearPlaces); ++tried) {
+      const auto nearest = std::min_element(square.begin(), end);
+      const auto i = static_cast<std::size_t>(nearest - square.begin());
+      const glm::vec3 up = height_m * places[i].normal;
+      if (isOpen(point + up, places[i].point + up)) return firstPlace_[side] + static_cast<std::uint32_t>(i);
+      *nearest = std::numeric_limits<float>::infinity();
     }
     return nowhere;
   }

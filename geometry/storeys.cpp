@@ -84,10 +84,12 @@ bool isClosedBetween(const AirMap& map, const RayScene& rays, std::uint32_t a, s
       middle_m = 0.5 * (bottom_m + top_m);
     }
   }
+  if (tallest_m <= 0.0) return true;
+  if (!map.mayStop(a) && !map.mayStop(b)) return false;
   const auto local = [&](std::uint32_t cell) {
     return glm::vec3(glm::dvec3(map.middleOf(cell), middle_m) - rays.origin());
   };
-  return tallest_m <= 0.0 || rays.occluded(local(a), local(b), RayScene::Barrier::opaqueAndGlass);
+  return rays.occluded(local(a), local(b), RayScene::Barrier::opaqueAndGlass);
 }
 
 StoreyCells cellsOf(const AirMap& map, const Pieces& pieces, const RayScene& rays, double floor_m,
