@@ -30,7 +30,7 @@ constexpr std::uint32_t raysOfPoint = 6;
 constexpr std::uint32_t pointsOfSide = 3;  // at least; one where a side is smaller than an opening
 constexpr double pointsOfModel = 4000.0;   // further ones, shared out by area
 constexpr std::size_t pointsOfSideMax = 256;
-constexpr std::size_t nearPlaces = 16;     // that a way is looked for to from a point on a side
+constexpr std::size_t nearPlaces = 16;    // that a way is looked for to from a point on a side
 constexpr std::uint32_t closerRays = 32;  // of a closer look
 constexpr std::uint32_t closerRaysOfSmall = 8;
 constexpr std::uint32_t agreeingRays = 8;  // of these, where all agree with the side's points
@@ -396,28 +396,34 @@ class AirSurvey {
     return isOpen(point, above) && isOpenWide(above, hover(met.place)) && isOpenWide(hover(place), above);
   }
 
-  /// Joins the airs that bundles pass between. Which of them are tried first does not matter: one ray of
-  /// each place is tried on all threads, the others where airs are still apart.
+  /// Joins the airs that bundles pass between. Which of them are tried first does not matter: a few places
+  /// join most airs, and the others then have little left to try.
   void joinAcrossAir() {
-    std::vector<std::uint8_t> passing(places_.size(), raysOfPoint);  // the first ray that a bundle follows
-    forEachIndex(places_.size(), sidesOfTask, [&](std::size_t index) {
-      const auto place = static_cast<std::uint32_t>(index);
-      if (!places_[place].isFree) return;
-      for (std::uint8_t ray = 0; ray < raysOfPoint && passing[place] == raysOfPoint; ++ray) {
-        const std::uint32_t other = met_[index * raysOfPoint + ray].place;
-        if (other != nowhere && bundlePasses(place, ray)) passing[place] = ray;
-      }
-    });
-    for (std::uint32_t place = 0; place < places_.size(); ++place) {
-      if (passing[place] < raysOfPoint) {
-        join(place, met_[std::size_t{place} * raysOfPoint + passing[place]].place);
+    constexpr std::uint8_t none = raysOfPoint;
+    std::vector<std::uint8_t> tried(places_.size(), 0);  // rays
+    std::vector<std::uint8_t> passing(places_.size());   // the ray that a bundle follows
+    for (const std::size_t every : {64U, 8U, 1U}) {
+      for (std::uint32_t place = 0; place < parent_.size(); ++place) parent_[place] = root(place);
+      std::fill(passing.begin(), passing.end(), none);
+      forEachIndex((places_.size() + every - 1) / every, sidesOfTask, [&](std::size_t index) {
+        const auto place = static_cast<std::uint32_t>(index * every);
+        if (!places_[place].isFree) return;
+        while (tried[place] < raysOfPoint && passing[place] == none) {
+          const std::uint8_t ray = tried[place]++;
+          const std::uint32_t other = met_[std::size_t{place} * raysOfPoint + ray].place;
+          const bool areApart = other != nowhere && parent_[place] != parent_[other];
+          if (areApart && bundlePasses(place, ray)) passing[place] = ray;
+        }
+      });
+      for (std::uint32_t place = 0; place < places_.size(); ++place) {
+        if (passing[place] != none)
+          join(place, met_[std::size_t{place} * raysOfPoint + passing[place]].place);
       }
     }
     for (std::uint32_t place = 0; place < places_.size(); ++place) {
-      for (std::uint32_t ray = passing[place] + 1U; ray < raysOfPoint; ++ray) {
+      for (std::uint32_t ray = tried[place]; places_[place].isFree && ray < raysOfPoint; ++ray) {
         const std::uint32_t other = met_[std::size_t{place} * raysOfPoint + ray].place;
-        if (other == nowhere || root(place) == root(other)) continue;
-        if (bundlePasses(place, ray)) join(place, other);
+        if (other != nowhere && root(place) != root(other) && bundlePasses(place, ray)) join(place, other);
       }
     }
     for (std::uint32_t place = 0; place < parent_.size(); ++place) parent_[place] = root(place);

@@ -51,15 +51,15 @@ double distanceToOutline(const glm::dvec2& point, const std::vector<glm::dvec2>&
   return least;
 }
 
-/// Share of rays from a point that end in a domain's air.
-double shareInAir(const Building& building, const RayScene& rays, const glm::dvec3& point,
-                  std::int32_t domain) {
+/// Whether `least` of the 16 rays from a point at least end in a domain's air.
+bool seesAir(const Building& building, const RayScene& rays, const glm::dvec3& point, std::int32_t domain,
+             std::uint32_t least) {
   constexpr std::uint32_t count = 16;
   const Sequence sequence(0xa17);
   const glm::vec3 from(point - rays.origin());
   const bool isOpen = building.domains[static_cast<std::size_t>(domain)].open;
   std::uint32_t inAir = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (std::uint32_t i = 0; i < count && inAir < least && inAir + count - i >= least; ++i) {
     const float z = 2.0F * sequence(i, 0) - 1.0F;
     const float angle = 2.0F * std::numbers::pi_v<float> * sequence(i, 1);
     const float radius = std::sqrt(std::max(0.0F, 1.0F - z * z));
@@ -67,7 +67,7 @@ double shareInAir(const Building& building, const RayScene& rays, const glm::dve
                                   RayScene::Barrier::opaqueAndGlass);
     if (hit ? building.sideDomain[hit.side()] == domain : isOpen) ++inAir;
   }
-  return static_cast<double>(inAir) / count;
+  return inAir >= least;
 }
 
 /// A room where all points see its air, else none: each sensor is then lit by the air that it stands in.
@@ -76,7 +76,7 @@ std::int32_t roomOfAll(const Building& building, const RayScene& rays, std::int3
   if (room < 0) return room;
   const std::int32_t domain = building.rooms[static_cast<std::size_t>(room)].domain;
   const bool isIn = std::all_of(points.begin(), points.end(), [&](const glm::dvec3& point) {
-    return shareInAir(building, rays, point, domain) > 0.0;
+    return seesAir(building, rays, point, domain, 1);
   });
   return isIn ? room : -1;
 }
@@ -297,7 +297,7 @@ void addGrid(Building& building, SensorGrid grid) {
 }  // namespace
 
 bool isInAir(const Building& building, const RayScene& rays, const glm::dvec3& point, std::int32_t domain) {
-  return shareInAir(building, rays, point, domain) >= 0.75;
+  return seesAir(building, rays, point, domain, 12);
 }
 
 void layGrids(Building& building, const Study& study, const RayScene& rays) {

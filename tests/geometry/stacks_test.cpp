@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -35,20 +36,34 @@ class StacksOfOffice : public testing::Test {
   const Stacks stacks{model.pieces, raster};
 };
 
-// Rays in float tell heights to some 1e-6 m, and of faces nearer than their offset only the first.
+/// From a place in plan to the nearest edge of a piece.
+double toEdge(const Pieces& pieces, std::uint32_t piece, const glm::dvec2& place) {
+  const auto corners = pieces.polygons[piece];
+  double least_m = 1e300;
+  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
+    const glm::dvec2 from(pieces.points[corners[j]]);
+    const glm::dvec2 edge = glm::dvec2(pieces.points[corners[i]]) - from;
+    const double t = glm::clamp(glm::dot(place - from, edge) / glm::dot(edge, edge), 0.0, 1.0);
+    least_m = std::min(least_m, glm::length(place - from - t * edge));
+  }
+  return least_m;
+}
+
+// Pieces leave their planes by up to 1 mm. Rays are in float: beside an edge either may be right.
 TEST_F(StacksOfOffice, HoldWhatUprightRaysMeet) {
   std::size_t met = 0;
   for (std::uint32_t cell = 0; cell < raster.size(); cell += 3) {
-    const std::span<const Meeting> over = stacks.over(cell);
     glm::vec3 from(glm::dvec3(raster.middleOf(cell), -5.0) - rays.origin());
-    std::size_t next = 0;
     while (const auto hit = rays.nearest(from, {0, 0, 1}, RayScene::Barrier::opaqueAndGlass)) {
-      from.z += hit.distance_m + rayOffset_m;
-      if (isUpright(model.pieces, hit.piece)) continue;
-      const double height_m = from.z - rayOffset_m + rays.origin().z;
-      while (next < over.size() && over[next].height_m < height_m - 1e-5) ++next;
-      ASSERT_LT(next, over.size()) << "at " << height_m;
-      EXPECT_NEAR(over[next].height_m, height_m, 1e-5);
+      from.z += hit.distance_m;
+      const double height_m = from.z + rays.origin().z;
+      from.z += rayOffset_m;
+      if (std::abs(model.pieces.normal[hit.piece].z) < 0.2) continue;
+      if (toEdge(model.pieces, hit.piece, raster.middleOf(cell)) < 1e-5) continue;
+      EXPECT_TRUE(std::ranges::any_of(
+          stacks.over(cell),
+          [&](const Meeting& meeting) { return std::abs(meeting.height_m - height_m) < 1e-3; }))
+          << "at " << height_m;
       ++met;
     }
   }
