@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 #include <map>
 #include <memory>
@@ -273,6 +274,11 @@ class AirSurvey {
         places_[place].side = side;
       }
     });
+    for (int axis = 0; axis < 3; ++axis) {
+      coordinate_[static_cast<std::size_t>(axis)].reserve(places_.size());
+      for (const Place& place : places_)
+        coordinate_[static_cast<std::size_t>(axis)].push_back(place.point[axis]);
+    }
   }
 
   void placeOver(std::uint32_t side) {
@@ -326,19 +332,24 @@ class AirSurvey {
   /// The place of `side` that shares the air of a point on it: of the nearest ones the first that no surface
   /// keeps it from; nowhere if the way to each is barred.
   [[nodiscard]] std::uint32_t placeNear(std::uint32_t side, const glm::vec3& point, float height_m) const {
-    const std::span<const Place> places = placesOf(side);
-    std::array<float, pointsOfSideMax> square;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const glm::vec3 way = places[i].point - point;
-      square[i] = glm::dot(way, way);
+    const std::uint32_t first = firstPlace_[side];
+    const std::size_t count = firstPlace_[side + 1] - first;
+    const std::array<const float*, 3> at{&coordinate_[0][first], &coordinate_[1][first],
+                                         &coordinate_[2][first]};
+    std::array<std::uint32_t, pointsOfSideMax> square;  // bits of floats, which are in order as they are
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::vec3 way = glm::vec3(at[0][i], at[1][i], at[2][i]) - point;
+      square[i] = std::bit_cast<std::uint32_t>(glm::dot(way, way));
     }
-    const auto end = square.begin() + static_cast<std::ptrdiff_t>(places.size());
-    for (std::size_t tried = 0; tried < std::min(places.size(), nearPlaces); ++tried) {
-      const auto nearest = std::min_element(square.begin(), end);
-      const auto i = static_cast<std::size_t>(nearest - square.begin());
-      const glm::vec3 up = height_m * places[i].normal;
-      if (isOpen(point + up, places[i].point + up)) return firstPlace_[side] + static_cast<std::uint32_t>(i);
-      *nearest = std::numeric_limits<float>::infinity();
+    for (std::size_t tried = 0; tried < std::min(count, nearPlaces); ++tried) {
+      std::uint32_t least = square[0];
+      for (std::size_t i = 1; i < count; ++i) least = std::min(least, square[i]);
+      std::size_t nearest = 0;
+      while (square[nearest] != least) ++nearest;
+      const Place& place = places_[first + nearest];
+      const glm::vec3 up = height_m * place.normal;
+      if (isOpen(point + up, place.point + up)) return first + static_cast<std::uint32_t>(nearest);
+      square[nearest] = std::numeric_limits<std::uint32_t>::max();
     }
     return nowhere;
   }
@@ -470,11 +481,12 @@ class AirSurvey {
   const Pieces& pieces_;
   const RayScene& rays_;
   std::vector<Place> places_;
-  std::vector<std::uint32_t> firstPlace_;  // #sides + 1
-  std::vector<Meeting> met_;               // #places × raysOfPoint
-  std::vector<std::uint32_t> parent_;      // union-find over places and the outside; in the end roots
-  std::vector<std::uint32_t> air_;         // #places + 1: nowhere where it is not known
-  std::vector<double> airArea_m2_;         // by root
+  std::array<std::vector<float>, 3> coordinate_;  // of their points, again
+  std::vector<std::uint32_t> firstPlace_;         // #sides + 1
+  std::vector<Meeting> met_;                      // #places × raysOfPoint
+  std::vector<std::uint32_t> parent_;             // union-find over places and the outside; in the end roots
+  std::vector<std::uint32_t> air_;                // #places + 1: nowhere where it is not known
+  std::vector<double> airArea_m2_;                // by root
   std::uint32_t outside_ = 0;
 };
 
