@@ -63,16 +63,26 @@ std::vector<std::uint32_t> sidesOf(const Building& building, std::int32_t domain
   return sides;
 }
 
-/// Domains that somebody asks about: rooms, and air that holds a sensor or an eye. Others (a lit hollow in a
-/// ceiling) send nothing anywhere. The outside lights the rest, so it is always among them.
+/// Domains that somebody asks about: air that holds a sensor or an eye, or all rooms where neither is
+/// indoors. Others (a flat next door, a lit hollow in a ceiling) send nothing anywhere. The outside lights
+/// the rest, so it is always among them.
 std::set<std::int32_t> askedDomains(const World& world, const Study& study) {
-  std::set<std::int32_t> asked{0};
-  for (const Room& room : world.building.rooms) asked.insert(room.domain);
-  for (const SensorGrid& grid : world.building.grids) {
-    if (grid.room >= 0) continue;
+  const Building& building = world.building;
+  std::set<std::int32_t> asked;
+  for (const SensorGrid& grid : building.grids) {
+    if (grid.room >= 0) {
+      asked.insert(building.rooms[static_cast<std::size_t>(grid.room)].domain);
+      continue;
+    }
     for (const glm::dvec3& point : grid.points) asked.insert(domainAt(world, world.local(point)));
   }
   for (const ViewSettings& view : study.views) asked.insert(domainAt(world, world.local(view.eye_m)));
+  const bool isIndoors = std::ranges::any_of(asked, [&](std::int32_t domain) {
+    return domain >= 0 && !building.domains[static_cast<std::size_t>(domain)].open;
+  });
+  if (!isIndoors)
+    for (const Room& room : building.rooms) asked.insert(room.domain);
+  asked.insert(0);
   return asked;
 }
 
