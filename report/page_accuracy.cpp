@@ -198,6 +198,11 @@ std::string modelledList(const ReportInput& input) {
     dark += isLit ? 0 : 1;
     unasked += isLit && !solved.contains(static_cast<std::int32_t>(d)) ? 1 : 0;
   }
+  std::string rooms;  // that are left out
+  for (const Room& room : input.building.rooms) {
+    if (input.building.domains[static_cast<std::size_t>(room.domain)].lit && !solved.contains(room.domain))
+      rooms += (rooms.empty() ? "" : ", ") + nameHtml(room.name);
+  }
   std::uint64_t figures = solution.surfaces.size();
   for (const GridValues& grid : solution.grids) figures += grid.sensors.size();
   std::string html = "<h3>What was modelled</h3>\n<ul>\n<li>" + count(counts.facesRead) +
@@ -215,7 +220,8 @@ std::string modelledList(const ReportInput& input) {
             count(figures) + " figures of sensors and surfaces.</li>\n";
   }
   html += "<li>Volumes of air left out: " + count(dark) + " that no light reaches, " + count(unasked) +
-          " that nothing asks for.</li>\n<li>Neglected: light that leaves a room through its glazing, is "
+          " that nothing asks for" + (rooms.empty() ? "" : ", with " + rooms) +
+          ".</li>\n<li>Neglected: light that leaves a room through its glazing, is "
           "reflected outside and comes back.</li>\n</ul>\n";
   return html;
 }

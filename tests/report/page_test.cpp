@@ -110,17 +110,21 @@ TEST(Page, ShowsEverySensorRoomAndView) {
   }
 }
 
-// Of five volumes of air two were solved, one is lit but asked for by nothing, two are dark.
+// Of five volumes of air two were solved, one with a room is lit but asked for by nothing, two are dark.
 TEST(Page, TellsWhatWasModelledAndWhatWasNot) {
   fake::Case made = fake::office();
   made.building.domains.resize(5);
+  made.building.rooms.push_back(made.building.rooms.back());
+  made.building.rooms.back().name = "Flat <next> door";
+  made.building.rooms.back().domain = 2;
   for (std::size_t d = 0; d < 3; ++d) made.building.domains[d].lit = true;
   std::size_t figures = made.solution.surfaces.size();
   for (const GridValues& grid : made.solution.grids) figures += grid.sensors.size();
   const std::string html = page(made);
   EXPECT_NE(html.find("96 faces were read; 22 planar polygons"), std::string::npos);
   EXPECT_NE(html.find(" for each of the " + std::to_string(figures) + " figures"), std::string::npos);
-  EXPECT_NE(html.find("Volumes of air left out: 2 that no light reaches, 1 that nothing asks for"),
+  EXPECT_NE(html.find("Volumes of air left out: 2 that no light reaches, 1 that nothing asks for, with Flat "
+                      "&lt;next&gt; door."),
             std::string::npos);
 }
 
