@@ -99,14 +99,36 @@ class DirectGather {
 
   /// An à-trous filter along surfaces. Shadows keep their edges, where light changes by more than its noise.
   void smooth() {
+    std::vector<Lit> lit(samples_.all.size());
+    std::vector<Lit> smoothed(lit.size());
+    for (std::size_t s = 0; s < lit.size(); ++s) {
+      const ViewSample<K>& own = samples_.all[s];
+      lit[s] = {own.point, own.normal, own.domain, own.deviation_lx, own.share * own.unhidden_lx};
+    }
     for (int step = 0; step < smoothingSteps; ++step) {
-      samples_.changeAll([&](ViewSample<K>& result, std::size_t tile, std::size_t s) {
-        smoothSample(samples_.all[s], tile, 1 << step, result);
+      samples_.forEach([&](std::size_t tile, std::size_t s) {
+        const float thickness_m = 0.004F * samples_.all[s].distance_m;
+        smoothed[s] =
+            lit[s].deviation_lx > 0.0F ? smoothedAt(lit, lit[s], thickness_m, tile, 1 << step) : lit[s];
       });
+      std::swap(lit, smoothed);
+    }
+    for (std::size_t s = 0; s < lit.size(); ++s) {
+      ViewSample<K>& own = samples_.all[s];
+      for (int c = 0; c < K; ++c)
+        own.share[c] = own.unhidden_lx[c] > 0.0F ? lit[s].direct_lx[c] / own.unhidden_lx[c] : 0.0F;
     }
   }
 
  private:
+  /// What smoothing looks at of a sample.
+  struct Lit {
+    glm::vec3 point, normal;
+    std::int32_t domain;
+    float deviation_lx;
+    Columns<K> direct_lx;
+  };
+
   void measure(std::size_t s, float rays) {
     ViewSample<K>& own = samples_.all[s];
     const DirectLight<K> direct =
@@ -180,25 +202,23 @@ class DirectGather {
     }
   }
 
-  void smoothSample(const ViewSample<K>& own, std::size_t tile, int reach, ViewSample<K>& result) const {
+  /// `thickness_m`: how far off its plane a surface still is the same.
+  [[nodiscard]] Lit smoothedAt(const std::vector<Lit>& lit, const Lit& own, float thickness_m,
+                               std::size_t tile, int reach) const {
     constexpr float kernel[3] = {0.375F, 0.25F, 0.0625F};
-    if (own.deviation_lx <= 0.0F) return;
-    const Columns<K> ownDirect_lx = own.share * own.unhidden_lx;
     Columns<K> sum;
     float weights = 0.0F;
     float variance = 0.0F;
-    const auto add = [&](const ViewSample<K>& other, float nearness) {
+    const auto add = [&](const Lit& other, float nearness) {
       const float facing = glm::dot(own.normal, other.normal);
       if (facing < 0.9F || other.domain != own.domain) return;
-      const float offPlane =
-          std::abs(glm::dot(other.point - own.point, own.normal)) / (0.004F * own.distance_m);
+      const float offPlane = std::abs(glm::dot(other.point - own.point, own.normal)) / thickness_m;
       if (offPlane > 4.0F) return;
-      Columns<K> direct_lx = other.share * other.unhidden_lx;
-      Columns<K> apart = direct_lx - ownDirect_lx;
+      Columns<K> apart = other.direct_lx - own.direct_lx;
       for (int c = 0; c < K; ++c) apart[c] = std::abs(apart[c]);
       const float step = layout_.strength(apart) / (3.0F * (own.deviation_lx + other.deviation_lx) + 1e-6F);
       const float weight = nearness * std::exp(-offPlane - 32.0F * (1.0F - facing) - step * step);
-      sum += weight * direct_lx;
+      sum += weight * other.direct_lx;
       weights += weight;
       variance += weight * weight * other.deviation_lx * other.deviation_lx;
     };
@@ -207,13 +227,12 @@ class DirectGather {
         const int x = samples_.columnOf(tile) + dx * reach;
         const int y = samples_.rowOf(tile) + dy * reach;
         if (x < 0 || y < 0 || x >= samples_.columns() || y >= samples_.rows()) continue;
-        for (const ViewSample<K>& other : samples_.in(x, y))
-          add(other, kernel[std::abs(dx)] * kernel[std::abs(dy)]);
+        const std::size_t there = samples_.tileAt(x, y);
+        for (std::size_t s = samples_.firstOf(there); s < samples_.firstOf(there + 1); ++s)
+          add(lit[s], kernel[std::abs(dx)] * kernel[std::abs(dy)]);
       }
     }
-    for (int c = 0; c < K; ++c)
-      result.share[c] = own.unhidden_lx[c] > 0.0F ? sum[c] / (weights * own.unhidden_lx[c]) : 0.0F;
-    result.deviation_lx = std::sqrt(variance) / weights;
+    return {own.point, own.normal, own.domain, std::sqrt(variance) / weights, (1.0F / weights) * sum};
   }
 
   const ColumnLayout& layout_;

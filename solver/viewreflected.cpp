@@ -113,11 +113,21 @@ class Records {
 template <int K>
 void gatherReflected(const SolvedLight<K>& light, std::uint32_t raysMost, ViewSamples<K>& samples) {
   Records<K> records(samples);
-  for (int stride = recordStride; stride > 0; stride /= 2) {
+  const auto addWhere = [&](int stride, const auto& isAsked) {
     records.add(light, raysMost, samples.inLattice(stride, [&](std::size_t tile, std::size_t s) {
-      return !records.cover(tile, samples.all[s]);
+      return isAsked(samples.all[s]) && !records.cover(tile, samples.all[s]);
     }));
+  };
+  // Of samples that are pixels, those in the middles of tiles take part; then every other one, and the rest.
+  const auto place = [](const ViewSample<K>& sample) { return glm::ivec2(sample.pixel); };
+  for (int stride = recordStride; stride > 0; stride /= 2) {
+    addWhere(stride, [&](const ViewSample<K>& sample) {
+      return !sample.isOfPixel() ||
+             (place(sample).x % tileSide_px == 1 && place(sample).y % tileSide_px == 1);
+    });
   }
+  addWhere(1, [&](const ViewSample<K>& sample) { return (place(sample).x + place(sample).y) % 2 == 0; });
+  addWhere(1, [&](const ViewSample<K>&) { return true; });
   samples.forEach([&](std::size_t tile, std::size_t s) {
     samples.all[s].reflected_lx = records.at(tile, samples.all[s]);
   });
