@@ -19,6 +19,7 @@ constexpr std::size_t directsLeast = 3;  // measured around a point, to judge by
 constexpr float furtherDirect = 8.0F;    // times as many rays where there is much noise
 constexpr float raysOfSure = 2.0F;       // times as many as were asked for: no more were needed
 constexpr float unevenMost = 0.02F;      // of all light, between points that another lies between
+constexpr float noiseMost = 3.0F;        // deviations that light may be off without being an outlier
 constexpr int smoothingSteps = 5;        // each doubles the reach: 62 tiles after five
 
 template <int K>
@@ -92,6 +93,8 @@ class DirectGather {
         ++others;
       });
       const float own_lx = layout_.strength(result.share * result.unhidden_lx);
+      low_lx = std::max(low_lx - noiseMost * own.deviation_lx, 0.0F);
+      high_lx += noiseMost * own.deviation_lx;
       if (others < fewest || own_lx <= 0.0F || (own_lx >= low_lx && own_lx <= high_lx)) return;
       result.share = (std::clamp(own_lx, low_lx, high_lx) / own_lx) * result.share;
     });
