@@ -119,7 +119,7 @@ svg .off{display:none}
 .exposure{display:block;font-size:.88rem}
 .glance table{font-size:.86rem}
 .glance tbody td:not(.n){min-width:0}
-.glance tbody th:not(.n){min-width:5.2em;padding-right:4px}
+.glance tbody th:not(.n){min-width:6.4em;padding-right:4px}
 .glance .yes{white-space:normal}
 .glance .n{padding-left:8px}
 .glance .n+td:not(.n),.glance .n+th:not(.n){padding-left:12px;padding-right:0}
