@@ -96,10 +96,10 @@ class Records {
     }
   }
 
-  /// How far a record that is gathered at a sample may hold. Where samples are pixels, it is a few of them.
+  /// How far a record that is gathered at a sample may hold. Where samples are pixels, it is two of them.
   [[nodiscard]] RecordReach reachOf(const ViewSample<K>& sample) const {
     const float tile_m = samples_.tile_m(sample);
-    const float least_m = sample.isOfPixel() ? samples_.pixel_m(sample) : recordReachLeast * tile_m;
+    const float least_m = sample.isOfPixel() ? 2.0F * samples_.pixel_m(sample) : recordReachLeast * tile_m;
     return {least_m, std::max(least_m, recordReachMost * tile_m)};
   }
 
