@@ -154,7 +154,7 @@ thead{display:table-header-group;break-inside:avoid}tr.chosen th,tr.chosen td{ba
 .rest{display:block;margin-top:5mm}.rest figure{margin:5mm 0 0}.falsecolours summary{display:none}.falsecolours .rest{display:grid;grid-template-columns:1fr 1fr;gap:5mm}
 figure{margin:5mm 0}figcaption{margin-top:2mm;font-size:8.6pt}.chart{max-width:128mm}tr.more{display:none}th[aria-sort] .sort::after{content:""}button.sort{display:contents!important}
 table{font-size:8.6pt}th,td{padding:1.6mm 2mm 1.6mm 0}.n{padding-left:2mm;padding-right:0}
-.n+th:not(.n),.n+td:not(.n){padding-left:4mm}tbody th:not(.n),tbody td:not(.n){min-width:4.6em}tbody th:not(.n){min-width:7.6em}tbody tr:nth-child(-n+2){break-after:avoid}tbody tr:nth-last-child(-n+2){break-before:avoid}
+.n+th:not(.n),.n+td:not(.n){padding-left:4mm}tbody th:not(.n),tbody td:not(.n){min-width:4.6em}tbody th:not(.n){min-width:8.8em}tbody tr:nth-child(-n+2){break-after:avoid}tbody tr:nth-last-child(-n+2){break-before:avoid}
 dl.figures{grid-template-columns:repeat(4,1fr);gap:3mm 6mm;margin:3mm 0}dl.figures dt{font-size:7.8pt}dl.figures dd{font-size:15pt}
 svg.plan{max-height:112mm}h3{margin:5mm 0 2mm}a{text-decoration:none}}
 )css";
