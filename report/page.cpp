@@ -43,9 +43,12 @@ std::string skyText(const Study& study) {
                                              : "CIE sky type " + std::to_string(type);
   sky += ", " + fixedNumber(daylight.sky.horizontalIlluminance_lx(), 0) + " lx on unobstructed ground";
   if (daylight.sun_deg) {
-    sky += ", sun at " + fixedNumber(daylight.sun_deg->x, 2) + "° altitude and " +
-           fixedNumber(daylight.sun_deg->y, 2) + "° azimuth";
-    if (study.sky.time) sky += " (" + clockTimeText(*study.sky.time) + ")";
+    sky += ", sun at " + fixedNumber(daylight.sun_deg->x, 1) + "° altitude and " +
+           fixedNumber(daylight.sun_deg->y, 1) + "° azimuth";
+    if (study.sky.time) {
+      const std::string time = clockTimeText(*study.sky.time);  // YYYY-MM-DDThh:mm:ss
+      sky += " (" + time.substr(0, 10) + " " + time.substr(11, 5) + ")";
+    }
     sky += daylight.directNormal_lx > 0.0
                ? ", its beam " + fixedNumber(daylight.directNormal_lx, 0) + " lx square to it"
                : ", its beam left out";

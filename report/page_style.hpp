@@ -55,7 +55,8 @@ thead th{color:var(--soft);font-size:.82rem;line-height:1.3;vertical-align:botto
 overflow-wrap:normal}
 .n{text-align:right;padding-left:14px;padding-right:0;white-space:nowrap}
 thead .n{white-space:normal}
-tbody th:not(.n),tbody td:not(.n){min-width:5.6em}
+tbody th:not(.n){min-width:7.6em}
+tbody td:not(.n){min-width:5.6em}
 .n+th:not(.n),.n+td:not(.n){padding-left:26px}
 thead .u{display:block}
 .swatch{display:inline-block;width:1.05em;height:1.05em;margin-right:.6em;vertical-align:-.16em;border-radius:2px;
@@ -118,7 +119,7 @@ svg .off{display:none}
 .exposure{display:block;font-size:.88rem}
 .glance table{font-size:.86rem}
 .glance tbody td:not(.n){min-width:0}
-.glance tbody th:not(.n){min-width:5.2em;padding-right:4px}
+.glance tbody th:not(.n){min-width:6.4em;padding-right:4px}
 .glance .yes{white-space:normal}
 .glance .n{padding-left:8px}
 .glance .n+td:not(.n),.glance .n+th:not(.n){padding-left:12px;padding-right:0}
@@ -139,7 +140,7 @@ svg .off{display:none}
 @media (max-width:900px){.first{grid-template-columns:minmax(0,1fr);gap:20px}}
 @media (max-width:640px){main,header,footer{padding-left:20px;padding-right:20px}header{padding-top:40px}
 h1{font-size:2rem}section{margin:56px 0}}
-@page{margin:17mm 16mm 18mm}
+@page{margin:17mm 16mm 18mm;@bottom-right{content:counter(page) " / " counter(pages);font:8pt system-ui,"Liberation Sans",Arial,sans-serif;color:#55524d}}
 @media print{:root:root:root{color-scheme:light;--paper:#fff;--ink:#000;--soft:#55524d;--line:#d5d1ca;--tint:#f5f3ef;--accent:#8a4f0c;
 --wall:#8b867d;--floor:#eeebe4;--glass:#3f93c4;--yes:#1f6b3a;--no:#a3261b}
 *{-webkit-print-color-adjust:exact;print-color-adjust:exact}
@@ -149,12 +150,13 @@ section{margin:12mm 0 0;padding-top:6mm}
 h2,h3,caption{break-after:avoid}figure,dl.figures,tr,li,pre{break-inside:avoid}
 thead{display:table-header-group;break-inside:avoid}tr.chosen th,tr.chosen td{background:none}.plan .sensors rect.chosen{stroke:none}.table{overflow:visible;margin:5mm 0}.short{break-inside:avoid}
 .filter,.fold,.switches,.readout,.exposure,.theme,.screen{display:none!important}
-.first{grid-template-columns:1fr;gap:4mm}.views{margin-top:5mm}.views img{max-height:78mm;width:auto;max-width:100%}
+.first{grid-template-columns:1fr;gap:4mm}.views{margin-top:5mm}.views img{max-height:150mm;width:auto;max-width:100%}
 .rest{display:block;margin-top:5mm}.rest figure{margin:5mm 0 0}.falsecolours summary{display:none}.falsecolours .rest{display:grid;grid-template-columns:1fr 1fr;gap:5mm}
 figure{margin:5mm 0}figcaption{margin-top:2mm;font-size:8.6pt}.chart{max-width:128mm}tr.more{display:none}th[aria-sort] .sort::after{content:""}button.sort{display:contents!important}
 table{font-size:8.6pt}th,td{padding:1.6mm 2mm 1.6mm 0}.n{padding-left:2mm;padding-right:0}
-.n+th:not(.n),.n+td:not(.n){padding-left:4mm}tbody th:not(.n),tbody td:not(.n){min-width:4.6em}tbody th:not(.n){min-width:5.8em}dl.figures{grid-template-columns:repeat(4,1fr);gap:3mm 6mm;margin:3mm 0}dl.figures dt{font-size:7.8pt}dl.figures dd{font-size:15pt}
-svg.plan{max-height:80mm}h3{margin:5mm 0 2mm}a{text-decoration:none}}
+.n+th:not(.n),.n+td:not(.n){padding-left:4mm}tbody th:not(.n),tbody td:not(.n){min-width:4.6em}tbody th:not(.n){min-width:8.8em}tbody tr:nth-child(-n+2){break-after:avoid}tbody tr:nth-last-child(-n+2){break-before:avoid}
+dl.figures{grid-template-columns:repeat(4,1fr);gap:3mm 6mm;margin:3mm 0}dl.figures dt{font-size:7.8pt}dl.figures dd{font-size:15pt}
+svg.plan{max-height:112mm}h3{margin:5mm 0 2mm}a{text-decoration:none}}
 )css";
 
 }  // namespace clerestory

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes a report: every file into a new folder, which takes its place when all are there.
+#include <functional>
 #include <map>
 
+#include <geometry/parallel.hpp>
 #include <report/report.hpp>
 
 #include "escape.hpp"
@@ -19,73 +21,92 @@ namespace {
 
 namespace fs = std::filesystem;
 
-PageView writeView(const fs::path& folder, const std::string& name, std::size_t index,
-                   const ReportInput& input, const DisplayTransform& display) {
-  const LuminanceImage& image = input.solution.views[index];
-  const ViewSettings& view = input.study.views[index];
-  const std::string stem = "view-" + name;
-  const double scale = exposureScale(image, view.exposure_ev);
-  const fs::path png = folder / (stem + ".png");
-  writeExr(folder / (stem + ".exr"), image, view, scale);
-  const std::vector<float> values = displayValues(image, scale, display);
-  writePng(png, displayImage(values, image.width, image.height));
-  PageView shown;
-  shown.index = index;
-  shown.name = view.name;
-  shown.fileName = name;
-  shown.png = readFile(png);
-  shown.white_cd_m2 = 1.0 / scale;
-  shown.exposure_ev = exposureValue(scale);
-  shown.width = image.width;
-  shown.height = image.height;
-  if (view.pngBits == 16) writePng16(png, values, image.width, image.height);  // the page keeps the small one
-  return shown;
+/// What is written of a report, each in a task of its own.
+using Tasks = std::vector<std::function<void()>>;
+
+void run(const Tasks& tasks) {
+  forEachIndex(tasks.size(), 1, [&](std::size_t i) { tasks[i](); });
 }
 
-/// Writes the views in false colours; puts the PNGs' bytes into the page's views.
-void writeFalseColours(const fs::path& folder, const ReportInput& input, std::vector<PageView>& views) {
-  std::vector<std::vector<float>> luminances;
-  std::vector<std::span<const float>> luminancesShown;
-  std::vector<std::span<const float>> illuminancesShown;
-  for (const PageView& view : views) luminances.push_back(luminancesOf(input.solution.views[view.index]));
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    luminancesShown.emplace_back(luminances[v]);
-    illuminancesShown.emplace_back(input.solution.views[views[v].index].illuminance_lx);
-  }
-  const bool isLinear = input.study.falseColoursAreLinear;
-  const ValueScale luminance = valueScale(luminancesShown, isLinear);
-  const ValueScale illuminance = valueScale(illuminancesShown, isLinear);
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    PageView& view = views[v];
-    const auto paint = [&](const std::string& kind, std::span<const float> values, const ValueScale& scale,
-                           const std::string& unit) -> std::string {
-      if (values.empty()) return {};
-      const fs::path file = folder / (kind + "-" + view.fileName + ".png");
-      writePng(file, falsePicture(values, view.width, view.height, scale,
-                                  (kind == "luminance" ? "Luminance, " : "Illuminance, ") + unit));
-      return readFile(file);
-    };
-    view.luminancePng = paint("luminance", luminancesShown[v], luminance, "cd/m2");
-    view.illuminancePng = paint("illuminance", illuminancesShown[v], illuminance, "lx");
-  }
-}
-
-/// Writes the views as EXR and PNG with the config that leads from one to the other; gives the PNGs' bytes
-/// for the page.
-std::vector<PageView> writeViews(const fs::path& folder, const ReportInput& input) {
+/// The views that there are, exposed, before any file of them is written.
+std::vector<PageView> exposedViews(const ReportInput& input) {
   std::vector<std::string> names;
   for (std::size_t v = 0; v < input.solution.views.size(); ++v) names.push_back(input.study.views.at(v).name);
-  if (names.empty()) return {};
   const std::vector<std::string> files = safeFileNames(names);
+  std::vector<PageView> views;
+  for (std::size_t v = 0; v < files.size(); ++v) {
+    const LuminanceImage& image = input.solution.views[v];
+    if (image.pixels_cd_m2.empty()) continue;
+    const double scale = exposureScale(image, input.study.views[v].exposure_ev);
+    PageView& view = views.emplace_back();
+    view.index = v;
+    view.name = names[v];
+    view.fileName = files[v];
+    view.white_cd_m2 = 1.0 / scale;
+    view.exposure_ev = exposureValue(scale);
+    view.width = image.width;
+    view.height = image.height;
+  }
+  return views;
+}
+
+/// Writes a view for a display; puts the bytes of the picture with 8 bits into the page's view.
+void writeDisplayed(const fs::path& folder, const ReportInput& input, const DisplayTransform& display,
+                    PageView& view) {
+  const fs::path png = folder / ("view-" + view.fileName + ".png");
+  const std::vector<float> values =
+      displayValues(input.solution.views[view.index], 1.0 / view.white_cd_m2, display);
+  writePng(png, displayImage(values, view.width, view.height));
+  view.png = readFile(png);
+  if (input.study.views[view.index].pngBits == 16) writePng16(png, values, view.width, view.height);
+}
+
+/// A quantity in all views, in the colours of one scale.
+struct FalseColours {
+  std::string kind, title;
+  std::vector<std::vector<float>> values;  ///< #views; empty where a view has none
+  ValueScale scale;
+
+  FalseColours(std::string file, std::string name, std::vector<std::vector<float>> ofViews, bool isLinear)
+      : kind(std::move(file)), title(std::move(name)), values(std::move(ofViews)) {
+    scale = valueScale({values.begin(), values.end()}, isLinear);
+  }
+  /// Writes it of a view; gives the file's bytes.
+  [[nodiscard]] std::string write(const fs::path& folder, const PageView& view, std::size_t v) const {
+    if (values[v].empty()) return {};
+    const fs::path file = folder / (kind + "-" + view.fileName + ".png");
+    writePng(file, falsePicture(values[v], view.width, view.height, scale, title));
+    return readFile(file);
+  }
+};
+
+/// Writes the views as EXR and PNG with the config that leads from one to the other, and in false colours;
+/// puts the PNGs' bytes into the page's views.
+void writeViews(const fs::path& folder, const ReportInput& input, std::vector<PageView>& views) {
+  if (views.empty()) return;
   const DisplayTransform display;
   if (display.isShipped()) writeFile(folder / "config.ocio", shippedConfig);
-  std::vector<PageView> pictures;
-  for (std::size_t v = 0; v < files.size(); ++v) {
-    if (input.solution.views[v].pixels_cd_m2.empty()) continue;
-    pictures.push_back(writeView(folder, files[v], v, input, display));
+  std::vector<std::vector<float>> luminances;
+  std::vector<std::vector<float>> illuminances;
+  for (const PageView& view : views) {
+    luminances.push_back(luminancesOf(input.solution.views[view.index]));
+    illuminances.push_back(input.solution.views[view.index].illuminance_lx);
   }
-  writeFalseColours(folder, input, pictures);
-  return pictures;
+  const bool isLinear = input.study.falseColoursAreLinear;
+  const FalseColours luminance("luminance", "Luminance, cd/m2", std::move(luminances), isLinear);
+  const FalseColours illuminance("illuminance", "Illuminance, lx", std::move(illuminances), isLinear);
+  Tasks tasks;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    PageView& view = views[v];
+    tasks.push_back([&, v] { view.luminancePng = luminance.write(folder, view, v); });
+    tasks.push_back([&, v] { view.illuminancePng = illuminance.write(folder, view, v); });
+    tasks.push_back([&] { writeDisplayed(folder, input, display, view); });
+    tasks.push_back([&] {
+      writeExr(folder / ("view-" + view.fileName + ".exr"), input.solution.views[view.index],
+               input.study.views[view.index], 1.0 / view.white_cd_m2);
+    });
+  }
+  run(tasks);
 }
 
 /// Writes the plans; gives the bytes of those that have too many sensors to be drawn in the page one by one.
@@ -96,13 +117,13 @@ std::vector<std::string> writePlans(const fs::path& folder, const ReportInput& i
   for (const SensorGrid& grid : input.building.grids) names.push_back(grid.name);
   const std::vector<std::string> files = safeFileNames(names);
   const PlanScale scale = planScale(input.solution);
-  std::vector<std::string> pictures;
-  for (std::size_t g = 0; g < files.size(); ++g) {
+  std::vector<std::string> pictures(files.size());
+  forEachIndex(files.size(), 1, [&](std::size_t g) {
     const fs::path file = folder / ("plan-" + files[g] + ".png");
     const bool isDrawn = input.building.grids[g].points.size() <= mostDrawnSensors;
     if (input.pictures || !isDrawn) writePng(file, planPicture(input, g, scale));
-    pictures.push_back(isDrawn ? std::string() : readFile(file));
-  }
+    if (!isDrawn) pictures[g] = readFile(file);
+  });
   return pictures;
 }
 
@@ -152,15 +173,22 @@ void writeStudy(const fs::path& partial, const fs::path& folder, const Study& st
 
 void writeReport(const fs::path& folder, const ReportInput& input) {
   writeBeside(folder, [&](const fs::path& partial) {
-    writeFile(partial / "study.json", studyJson(input));
-    writeFile(partial / "run.json", runJson(input));
-    writeStudy(partial, folder, input.study);
-    writeFile(partial / "sensors.csv", sensorsCsv(input));
-    writeFile(partial / "surfaces.csv", surfacesCsv(input));
-    writeFile(partial / "rooms.csv", roomsCsv(input));
-    writeFile(partial / "iterations.csv", iterationsCsv(input));
-    writeFile(partial / "scene.glb", sceneGlb(input));
-    const PagePictures pictures = {writeViews(partial, input), writePlans(partial, input)};
+    PagePictures pictures;
+    withThreads(input.run.threads, [&] {
+      pictures.views = exposedViews(input);
+      run({[&] { writeViews(partial, input, pictures.views); },
+           [&] { pictures.plans = writePlans(partial, input); },
+           [&] { writeFile(partial / "scene.glb", sceneGlb(input)); },
+           [&] { writeFile(partial / "study.json", studyJson(input)); },
+           [&] {
+             writeFile(partial / "run.json", runJson(input));
+             writeStudy(partial, folder, input.study);
+             writeFile(partial / "sensors.csv", sensorsCsv(input));
+             writeFile(partial / "surfaces.csv", surfacesCsv(input));
+             writeFile(partial / "rooms.csv", roomsCsv(input));
+             writeFile(partial / "iterations.csv", iterationsCsv(input));
+           }});
+    });
     writeFile(partial / "index.html", pageHtml(input, pictures));
   });
 }
