@@ -57,8 +57,12 @@ TEST(FurtherModels, ApartmentHasSevenRooms) {
 TEST(FurtherModels, HoneybeeHouseAndOffice) {
   expectRooms(buildingOfModel("room-honeybee/single_family_home.obj"),
               {14.25, 16.0, 16.0, 16.62, 16.63, 18.2, 47.35}, 8);
-  expectRooms(buildingOfModel("room-honeybee/model_complete_multi_zone_office.obj"), {100.0, 100.0, 100.0},
-              8);
+  const Building office = buildingOfModel("room-honeybee/model_complete_multi_zone_office.obj");
+  expectRooms(office, {100.0, 100.0, 100.0}, 8);
+  ASSERT_EQ(office.rooms.size(), 3U);
+  EXPECT_EQ(office.rooms[0].name, "First_Floor");
+  EXPECT_EQ(office.rooms[1].name, "Second_Floor");
+  EXPECT_EQ(office.rooms[2].name, "Attic");
 }
 
 TEST(FurtherModels, OpenPlanOfficeAndTutorialRoomAreOneRoom) {
