@@ -11,6 +11,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <span>
 
 #include <geometry/sampling.hpp>
 
@@ -49,7 +50,7 @@ struct Look {
 
 /// A part of a floor, a piece or a face, with looks from all over it.
 struct Tile {
-  std::uint32_t piece;
+  std::uint32_t piece;  ///< itself, or the one that a face lies on
   double height_m, area_m2, outline_m;
   std::vector<Look> looks;
 
@@ -283,6 +284,23 @@ std::vector<PlanLine> linesOf(const Building& building, const RayScene& rays, co
   return lines;
 }
 
+/// The level's first piece that covers a place.
+std::uint32_t pieceAt(const Pieces& pieces, const Level& level, const glm::dvec2& place) {
+  for (const Tile& tile : level.pieces) {
+    const auto loop = pieces.polygons[tile.piece];
+    const auto isLeft = [&](std::size_t i) {
+      const glm::dvec2 from(pieces.points[loop[i]]);
+      const glm::dvec2 way = glm::dvec2(pieces.points[loop[(i + 1) % loop.size()]]) - from;
+      return way.x * (place.y - from.y) - way.y * (place.x - from.x) >= 0.0;
+    };
+    const bool first = isLeft(0);
+    std::size_t i = 1;
+    while (i < loop.size() && isLeft(i) == first) ++i;
+    if (i == loop.size()) return tile.piece;
+  }
+  return level.pieces.front().piece;
+}
+
 /// Adds what a level has of each region. A face that lies in two for want of a line is shared out.
 void addFaces(const Building& building, const RayScene& rays, const RoomAir& air, std::size_t s,
               FloorLooks& looks, Level& level) {
@@ -303,8 +321,13 @@ void addFaces(const Building& building, const RayScene& rays, const RoomAir& air
     for (const glm::dvec2& place : face.samples(air.map.frame(), count)) {
       const std::optional<Look> look = looks.fromLevel(place, level);
       if (!look || look->region < 0) continue;
-      ofRegion.try_emplace(look->region, Tile{0, level.height_m, face.area_m2, face.outline_m, {}})
-          .first->second.looks.push_back(*look);
+      const auto found = ofRegion.find(look->region);
+      if (found != ofRegion.end()) {
+        found->second.looks.push_back(*look);
+        continue;
+      }
+      const std::uint32_t piece = pieceAt(building.model.pieces, level, place);
+      ofRegion.emplace(look->region, Tile{piece, level.height_m, face.area_m2, face.outline_m, {*look}});
     }
     const bool isSmall = face.area_m2 < sharedLeast_m2;
     const double shareLeast = isSliver ? sliverShare : isSmall ? 0.5 : 1.0 - allShare;
@@ -356,21 +379,41 @@ std::vector<Level> levelsOf(const Building& building, const RayScene& rays, cons
   return levels;
 }
 
-/// Whether a tile of another level may be floor too: a platform and tiles of another thickness are, what lies
+/// Whether tiles of another level may be floor too: a platform and tiles of another thickness are, what lies
 /// over the floor (a bed, a rug) or under something is not.
-bool liesBeside(const Tile& tile, double floor_m) {
-  const double over = tile.shareOf([&](const Look& look) {
-    return std::ranges::any_of(look.column->treads, [&](const Tread& tread) {
-      return std::abs(tread.height_m - floor_m) <= levelTolerance_m && tread.height_m < tile.height_m;
+bool lieBeside(std::span<const Tile* const> tiles, double floor_m) {
+  double area_m2 = 0.0;
+  double over_m2 = 0.0;
+  double stoodOn_m2 = 0.0;
+  for (const Tile* tile : tiles) {
+    const double over = tile->shareOf([&](const Look& look) {
+      return std::ranges::any_of(look.column->treads, [&](const Tread& tread) {
+        return std::abs(tread.height_m - floor_m) <= levelTolerance_m && tread.height_m < tile->height_m;
+      });
     });
-  });
-  const double stoodOn = tile.shareOf([](const Look& look) { return look.isStoodOn; });
-  return over <= 0.5 && stoodOn >= stoodOnLeast;
+    area_m2 += tile->area_m2;
+    over_m2 += over * tile->area_m2;
+    stoodOn_m2 += tile->stoodOn_m2();
+  }
+  return over_m2 <= 0.5 * area_m2 && stoodOn_m2 >= stoodOnLeast * area_m2;
+}
+
+/// Those of a level's tiles that are floor beside the main one: of each surface all or none, so that it goes
+/// on under a kitchen.
+std::vector<const Tile*> besideMain(const Pieces& pieces, std::span<const Tile* const> tiles,
+                                    double floor_m) {
+  std::map<std::uint32_t, std::vector<const Tile*>> bySurface;
+  for (const Tile* tile : tiles) bySurface[pieces.surface[tile->piece]].push_back(tile);
+  std::vector<const Tile*> result;
+  for (const auto& [surface, own] : bySurface) {
+    if (lieBeside(own, floor_m)) result.insert(result.end(), own.begin(), own.end());
+  }
+  return result;
 }
 
 /// Of a storey's levels the one that most of the region can be stood on, the lower of equals, and what lies
 /// beside it.
-Floor floorOf(const std::vector<Level>& levels, std::int32_t region) {
+Floor floorOf(const Pieces& pieces, const std::vector<Level>& levels, std::int32_t region) {
   const Level* main = nullptr;
   double mostStoodOn_m2 = 0.0;
   for (const Level& level : levels) {
@@ -383,16 +426,22 @@ Floor floorOf(const std::vector<Level>& levels, std::int32_t region) {
   if (main == nullptr) return {};
   Floor floor{.height_m = main->height_m, .pieces = {}};
   for (const Level& level : levels) {
-    const auto isFloor = [&](const Tile& tile) { return &level == main || liesBeside(tile, main->height_m); };
-    double area_m2 = 0.0;
-    for (const Tile& face : level.faces[at(region)]) {
-      if (isFloor(face) && (&level == main || face.width_m() >= platformLeast_m)) area_m2 += face.area_m2;
+    std::vector<const Tile*> faces;
+    std::vector<const Tile*> own;
+    for (const Tile& face : level.faces[at(region)]) faces.push_back(&face);
+    for (const Tile& tile : level.pieces) {
+      if (regionOf(tile) == region) own.push_back(&tile);
     }
+    if (&level != main) {
+      faces = besideMain(pieces, faces, main->height_m);
+      std::erase_if(faces, [](const Tile* face) { return face->width_m() < platformLeast_m; });
+      own = besideMain(pieces, own, main->height_m);
+    }
+    double area_m2 = 0.0;
+    for (const Tile* face : faces) area_m2 += face->area_m2;
     if (&level != main && area_m2 < floorAreaLeast_m2) continue;
     floor.area_m2 += area_m2;
-    for (const Tile& tile : level.pieces) {
-      if (regionOf(tile) == region && isFloor(tile)) floor.pieces.push_back(tile.piece);
-    }
+    for (const Tile* tile : own) floor.pieces.push_back(tile->piece);
   }
   return floor;
 }
@@ -405,7 +454,7 @@ std::vector<Floor> floorsOf(const Building& building, const RayScene& rays, cons
   const std::vector<Level> levels = levelsOf(building, rays, air, storey, looks);
   std::vector<Floor> floors;
   for (std::int32_t region = 0; region < air.storeys[storey].parted.count; ++region)
-    floors.push_back(floorOf(levels, region));
+    floors.push_back(floorOf(building.model.pieces, levels, region));
   return floors;
 }
 

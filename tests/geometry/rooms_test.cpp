@@ -172,6 +172,27 @@ TEST(Rooms, SurfacesInOnePlaneCountOnce) {
   EXPECT_NEAR(building.rooms[0].floorArea_m2, 12.0, exact);
 }
 
+// Tiles 6 mm lower than the parquet are floor under a cupboard too, where they have been cut at its foot.
+TEST(Rooms, FloorOfTilesGoesOnUnderACupboard) {
+  Drawing drawing;
+  addBox(drawing, {0, 0, -0.006}, {4, 3, 2.7}, plaster, 0, {0});
+  drawing.face({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}}, wood, addObject(drawing, "parquet"));
+  drawing.face({{0, 2, -0.006}, {4, 2, -0.006}, {4, 3, -0.006}, {0, 3, -0.006}}, plaster,
+               addObject(drawing, "tiles"));
+  addBox(drawing, {1, 2.4, -0.006}, {3, 3, 0.9}, wood, addObject(drawing, "cupboard"), {0, 4});
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 1U);
+  EXPECT_NEAR(building.rooms[0].floorArea_m2, 12.0, exact);
+  double pieces_m2 = 0.0;
+  std::size_t tiles = 0;
+  for (const std::uint32_t piece : building.rooms[0].floorPieces) {
+    pieces_m2 += building.model.pieces.area_m2[piece];
+    tiles += building.model.surfaces[building.model.pieces.surface[piece]].name == "tiles" ? 1 : 0;
+  }
+  EXPECT_NEAR(pieces_m2, 12.0, exact);
+  EXPECT_GE(tiles, 2U) << "they are cut at the cupboard's foot";
+}
+
 // A slab that runs through under the walls is no floor there, nor in a window's reveal.
 TEST(Rooms, FloorEndsAtTheWalls) {
   Drawing drawing;
