@@ -398,6 +398,16 @@ bool lieBeside(std::span<const Tile* const> tiles, double floor_m) {
   return over_m2 <= 0.5 * area_m2 && stoodOn_m2 >= stoodOnLeast * area_m2;
 }
 
+/// Height of the air over a face, in the mean.
+double airOver_m(const Tile& face, const Storey& storey) {
+  double sum_m = 0.0;
+  for (const Look& look : face.looks) {
+    for (const AirSpan& span : look.column->spans)
+      sum_m += std::max(0.0, std::min(span.high_m, storey.end_m) - std::max(span.low_m, face.height_m));
+  }
+  return sum_m / static_cast<double>(face.looks.size());
+}
+
 /// Those of a level's tiles that are floor beside the main one: of each surface all or none, so that it goes
 /// on under a kitchen.
 std::vector<const Tile*> besideMain(const Pieces& pieces, std::span<const Tile* const> tiles,
@@ -413,7 +423,8 @@ std::vector<const Tile*> besideMain(const Pieces& pieces, std::span<const Tile* 
 
 /// Of a storey's levels the one that most of the region can be stood on, the lower of equals, and what lies
 /// beside it.
-Floor floorOf(const Pieces& pieces, const std::vector<Level>& levels, std::int32_t region) {
+Floor floorOf(const Pieces& pieces, const Storey& storey, const std::vector<Level>& levels,
+              std::int32_t region) {
   const Level* main = nullptr;
   double mostStoodOn_m2 = 0.0;
   for (const Level& level : levels) {
@@ -438,9 +449,14 @@ Floor floorOf(const Pieces& pieces, const std::vector<Level>& levels, std::int32
       own = besideMain(pieces, own, main->height_m);
     }
     double area_m2 = 0.0;
-    for (const Tile* face : faces) area_m2 += face->area_m2;
+    double air_m3 = 0.0;
+    for (const Tile* face : faces) {
+      area_m2 += face->area_m2;
+      air_m3 += face->area_m2 * airOver_m(*face, storey);
+    }
     if (&level != main && area_m2 < floorAreaLeast_m2) continue;
     floor.area_m2 += area_m2;
+    floor.air_m3 += air_m3;
     for (const Tile* tile : own) floor.pieces.push_back(tile->piece);
   }
   return floor;
@@ -454,7 +470,7 @@ std::vector<Floor> floorsOf(const Building& building, const RayScene& rays, cons
   const std::vector<Level> levels = levelsOf(building, rays, air, storey, looks);
   std::vector<Floor> floors;
   for (std::int32_t region = 0; region < air.storeys[storey].parted.count; ++region)
-    floors.push_back(floorOf(building.model.pieces, levels, region));
+    floors.push_back(floorOf(building.model.pieces, air.storeys[storey], levels, region));
   return floors;
 }
 

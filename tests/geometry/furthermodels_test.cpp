@@ -90,10 +90,10 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Redrawn{"room-honeybee/single_family_home.obj"},
                     Redrawn{"room-honeybee/model_complete_multi_zone_office.obj"},
                     Redrawn{"room-radiance-tutorial/rt_room.obj"},
-                    Redrawn{"room-lbnl-openplan/frads_openplan.obj"},
+                    Redrawn{"room-lbnl-openplan/frads_openplan.obj", {1e-6, 1, 3e-3}},
                     Redrawn{"room-sh3d-Studio/Studio_shell.obj"},
-                    Redrawn{"room-sh3d-2BedroomApartment/2BedroomApartment_shell.obj", {6e-4, 10}},
-                    Redrawn{"room-duplex-ifc/duplex_webifc.obj", {1e-5, 1}}),
+                    Redrawn{"room-sh3d-2BedroomApartment/2BedroomApartment_shell.obj", {6e-4, 10, 1e-3}},
+                    Redrawn{"room-duplex-ifc/duplex_webifc.obj", {1e-5, 1, 3e-3}}),
     [](const auto& test) { return std::filesystem::path(test.param.file).stem().string(); });
 
 // Two dwellings of seven rooms each: all panes serve one of them.
