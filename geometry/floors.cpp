@@ -13,9 +13,8 @@
 #include <optional>
 #include <span>
 
-#include <geometry/sampling.hpp>
-
 #include "floorfaces.hpp"
+#include "rooms.hpp"
 
 namespace clerestory {
 namespace {
@@ -37,6 +36,13 @@ double heightOf(const Pieces& pieces, std::uint32_t piece) {
   double sum_m = 0.0;
   for (const std::uint32_t corner : pieces.polygons[piece]) sum_m += pieces.points[corner].z;
   return sum_m / static_cast<double>(pieces.polygons[piece].size());
+}
+
+/// That of a piece's plane at a place.
+double heightAt(const Pieces& pieces, std::uint32_t piece, const glm::dvec2& place) {
+  const glm::dvec3& corner = pieces.points[pieces.polygons[piece][0]];
+  const glm::dvec3& normal = pieces.normal[piece];
+  return corner.z - glm::dot(glm::dvec2(normal), place - glm::dvec2(corner)) / normal.z;
 }
 
 /// A look up from a place on a floor.
@@ -119,6 +125,10 @@ class FloorLooks {
     return lookAt(cell, region, column, level.lowest_m, level.highest_m);
   }
 
+  [[nodiscard]] bool isInAir(const glm::dvec3& point) const {
+    return clerestory::isInAir(building_, rays_, point, air_.domain);
+  }
+
  private:
   /// That of the nearest cell about a place that nothing hides from it: at a person's middle or, between
   /// furniture, under the ceiling.
@@ -193,17 +203,20 @@ std::vector<Tile> tilesOf(const Building& building, const RoomAir& air, const St
     if (std::abs(pieces.normal[piece].z) < upward) continue;
     Tile tile{piece, heightOf(pieces, piece), pieces.area_m2[piece], 0.0, {}};
     if (std::abs(tile.height_m - storey.floor_m) > floorReach_m) continue;
-    std::vector<glm::dvec3> polygon;
-    for (const std::uint32_t corner : pieces.polygons[piece]) polygon.push_back(pieces.points[corner]);
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-      tile.outline_m += glm::length(polygon[(i + 1) % polygon.size()] - polygon[i]);
+    const auto loop = pieces.polygons[piece];
+    const auto at = [&](std::size_t corner) { return glm::dvec2(pieces.points[loop[corner % loop.size()]]); };
+    FloorFace face{pieces.area_m2[piece], 0.0, {}};
+    for (std::size_t i = 0; i < loop.size(); ++i) face.outline_m += glm::length(at(i + 1) - at(i));
+    for (std::size_t i = 2; i < loop.size(); ++i) face.triangles.push_back({at(0), at(i - 1), at(i)});
+    tile.outline_m = face.outline_m;
     const std::uint32_t upper = 2 * piece + (pieces.normal[piece].z > 0.0 ? 0 : 1);
-    const Sequence sequence(0x711e);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      std::optional<Look> look =
-          looks.fromPiece(pointOnPolygon<glm::dvec3>(polygon, sequence(i, 0), sequence(i, 1)));
+    for (const glm::dvec2& place : face.samples(air.map.frame(), count)) {
+      const double height_m = heightAt(pieces, piece, place);
+      std::optional<Look> look = looks.fromPiece({place, height_m});
       if (!look) continue;
-      if (building.sideDomain[upper] != air.domain) look->isStoodOn = false;  // under a foot, a rug
+      // A threshold lies in two airs, and its side in that of most of it.
+      if (look->isStoodOn && building.sideDomain[upper] != air.domain)
+        look->isStoodOn = looks.isInAir({place, height_m + 0.5 * headroom_m});
       tile.looks.push_back(*look);
     }
     if (!tile.looks.empty()) tiles.push_back(std::move(tile));
