@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <set>
 
@@ -249,6 +250,102 @@ TEST(Domains, FloorThatRunsThroughUnderAWallIsParted) {
   addBox(drawing, kLow, {8, 3, 3});
   drawing.face({{4, 0, 0}, {4, 3, 0}, {4, 3, 3}, {4, 0, 3}}, wood, 1);
   expectTwoRooms(buildingOf(drawing.scene));
+}
+
+// Air too thin for anything to fly through belongs to the room around it, if to any: it is none by itself.
+
+/// The room of most tests with a pane, and something thin in it.
+Building litRoomWith(const std::function<void(Drawing&)>& add) {
+  Drawing drawing;
+  addRoomWithPane(drawing, kLow, kHigh, {1.0, 1.0, 3.0, 2.0});
+  add(drawing);
+  return buildingOf(drawing.scene);
+}
+
+void expectOneRoom(const Building& building, double floor_m2, double tolerance_m2) {
+  ASSERT_EQ(building.rooms.size(), 1U);
+  EXPECT_NEAR(building.rooms[0].floorArea_m2, floor_m2, tolerance_m2);
+  ASSERT_EQ(building.portals.size(), 1U);
+  EXPECT_EQ(building.portals[0].room, 0);
+  for (std::size_t domain = 1; domain < building.domains.size(); ++domain) {
+    EXPECT_EQ(building.domains[domain].lit, static_cast<std::int32_t>(domain) == building.rooms[0].domain);
+  }
+}
+
+TEST(Domains, PlatesAMillimetreApartAreInOneRoom) {
+  for (const double gap_m : {0.0011, 0.003, 0.01, 0.03}) {
+    SCOPED_TRACE(gap_m);
+    const Building building = litRoomWith([&](Drawing& drawing) {
+      for (const double z : {1.0, 1.0 + gap_m})
+        drawing.face({{1, 1, z}, {3, 1, z}, {3, 2, z}, {1, 2, z}}, wood);
+    });
+    expectOneRoom(building, 12.0, exact);
+    const std::int32_t own = building.rooms[0].domain;
+    const auto above = [&](double height_m) {
+      return domainsOf(building, {0, 0, 1},
+                       [&](const glm::dvec3& c) { return std::abs(c.z - height_m) < 1e-6; });
+    };
+    const auto below = [&](double height_m) {
+      return domainsOf(building, {0, 0, -1},
+                       [&](const glm::dvec3& c) { return std::abs(c.z - height_m) < 1e-6; });
+    };
+    EXPECT_EQ(above(1.0 + gap_m), std::set<std::int32_t>{own});
+    EXPECT_EQ(below(1.0), std::set<std::int32_t>{own});
+    EXPECT_EQ(above(1.0), std::set<std::int32_t>{own}) << "within the gap";
+    EXPECT_EQ(below(1.0 + gap_m), std::set<std::int32_t>{own}) << "within the gap";
+  }
+}
+
+// A partition that leaves a wall at 1 degree: the wedge is 35 mm wide at its mouth, 2 m from its edge.
+TEST(Domains, WedgeOfOneDegreeIsInItsRoom) {
+  const double mouth_m = 2.0 * std::tan(std::numbers::pi / 180.0);
+  const Building building = litRoomWith([&](Drawing& drawing) {
+    drawing.face({{1, 3, 0}, {3, 3 - mouth_m, 0}, {3, 3 - mouth_m, 3}, {1, 3, 3}}, wood);
+  });
+  expectOneRoom(building, 12.0, mouth_m);
+}
+
+// Walls that meet at 179 degrees: 35 mm of a bulge over 4 m.
+TEST(Domains, BulgeOfOneDegreeIsInItsRoom) {
+  const double bulge_m = 2.0 * std::tan(0.5 * std::numbers::pi / 180.0);
+  Drawing drawing;
+  addWallWithHole(drawing, 0, 0, 4, 3, 0.0, {1.0, 1.0, 3.0, 2.0});
+  drawing.face(upright(1.0, 1.0, 3.0, 2.0), glass);
+  drawing.face({{0, 0, 0}, {0, 3, 0}, {0, 3, 3}, {0, 0, 3}});
+  drawing.face({{4, 0, 0}, {4, 3, 0}, {4, 3, 3}, {4, 0, 3}});
+  drawing.face({{0, 3, 0}, {2, 3 + bulge_m, 0}, {2, 3 + bulge_m, 3}, {0, 3, 3}});
+  drawing.face({{4, 3, 0}, {2, 3 + bulge_m, 0}, {2, 3 + bulge_m, 3}, {4, 3, 3}});
+  for (const double z : {0.0, 3.0})
+    drawing.face({{0, 0, z}, {4, 0, z}, {4, 3, z}, {2, 3 + bulge_m, z}, {0, 3, z}});
+  const Building building = buildingOf(drawing.scene);
+  expectOneRoom(building, 12.0 + 2.0 * bulge_m, exact);
+  EXPECT_NEAR(building.rooms[0].volume_m3, 3.0 * (12.0 + 2.0 * bulge_m), 1e-6);
+}
+
+// What nothing flies through joins no rooms: a keyhole of 20 x 50 mm leaves the room behind it dark.
+TEST(Domains, KeyholeJoinsNothingAndAHatchDoes) {
+  for (const double width_m : {0.02, 0.30}) {
+    SCOPED_TRACE(width_m);
+    Drawing drawing;
+    addRoomWithPane(drawing, kLow, {8, 3, 3}, {1.0, 1.0, 3.0, 2.0});
+    const double low = 1.5 - 0.5 * width_m;
+    const double top_m = 1.0 + 2.5 * width_m;
+    const auto wall = [&](double y0, double z0, double y1, double z1) {
+      drawing.face({{4, y0, z0}, {4, y1, z0}, {4, y1, z1}, {4, y0, z1}});
+    };
+    wall(0, 0, low, 3);
+    wall(low + width_m, 0, 3, 3);
+    wall(low, 0, low + width_m, 1.0);
+    wall(low, top_m, low + width_m, 3);
+    const Building building = buildingOf(drawing.scene);
+    ASSERT_EQ(building.rooms.size(), 2U);
+    EXPECT_EQ(building.rooms[0].domain == building.rooms[1].domain, width_m > 0.06);
+    for (const Room& room : building.rooms) EXPECT_NEAR(room.floorArea_m2, 12.0, exact);
+    ASSERT_EQ(building.portals.size(), 1U);
+    EXPECT_EQ(building.portals[0].room, 0);
+    const Room& behind = building.rooms[1];
+    EXPECT_EQ(building.domains[static_cast<std::size_t>(behind.domain)].lit, width_m > 0.06);
+  }
 }
 
 TEST(Domains, DoNotDependOnTheOrderOfFaces) {
