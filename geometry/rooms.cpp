@@ -22,6 +22,7 @@ namespace clerestory {
 namespace {
 
 constexpr float headroom_m = 1.6F;
+constexpr double slopingShare = 0.2;    // most of a ceiling at one height, for it to be level
 constexpr double enclosedShare = 0.95;  // of rays from covered air outside, for it to be a room
 
 std::size_t at(std::int32_t index) {
@@ -34,8 +35,8 @@ glm::dvec3 centreOf(const Pieces& pieces, std::uint32_t piece) {
   return sum / static_cast<double>(pieces.polygons[piece].size());
 }
 
-/// Air of a region by its cells: the height of most of its ceiling, and how much there is where the storey
-/// has no floor, over a stair.
+/// Air of a region by its cells: the height of most of its ceiling (the mean one where it slopes), and how
+/// much there is where the storey has no floor, over a stair.
 struct AirMeasure {
   double ceiling_m = 0.0, overNoFloor_m3 = 0.0;
 };
@@ -59,11 +60,18 @@ AirMeasure measureAir(const RoomAir& air, const Storey& storey, std::int32_t reg
     ++cells;
   }
   std::size_t most = 0;
+  std::size_t all = 0;
+  double sum_m = 0.0;
   for (const auto& [centimetre, ceiling] : ceilings) {
-    if (ceiling.first <= most) continue;
-    most = ceiling.first;
-    measure.ceiling_m = ceiling.second;
+    const auto& [cells, height_m] = ceiling;
+    all += cells;
+    sum_m += static_cast<double>(cells) * height_m;
+    if (cells <= most) continue;
+    most = cells;
+    measure.ceiling_m = height_m;
   }
+  const bool slopes = static_cast<double>(most) < slopingShare * static_cast<double>(all);
+  if (slopes) measure.ceiling_m = sum_m / static_cast<double>(all);
   return measure;
 }
 

@@ -193,6 +193,20 @@ TEST(Rooms, FloorOfTilesGoesOnUnderACupboard) {
   EXPECT_GE(tiles, 2U) << "they are cut at the cupboard's foot";
 }
 
+// Under a gable no height is that of most of the ceiling: the mean one stands for it. The volume is exact.
+TEST(Rooms, SlopingCeilingHasAMeanHeight) {
+  Drawing drawing;
+  drawing.face({{0, 0, 0}, {4, 0, 0}, {4, 6, 0}, {0, 6, 0}});
+  for (const double x : {0.0, 4.0}) drawing.face({{x, 0, 0}, {x, 6, 0}, {x, 6, 1}, {x, 0, 1}});
+  for (const double y : {0.0, 6.0}) drawing.face({{0, y, 0}, {4, y, 0}, {4, y, 1}, {2, y, 3}, {0, y, 1}});
+  for (const double x : {0.0, 4.0}) drawing.face({{x, 0, 1}, {x, 6, 1}, {2, 6, 3}, {2, 0, 3}});
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 1U);
+  EXPECT_NEAR(building.rooms[0].floorArea_m2, 24.0, 1e-6);
+  EXPECT_NEAR(building.rooms[0].volume_m3, 48.0, 1e-6);
+  EXPECT_NEAR(building.rooms[0].ceiling_m, 2.0, 0.03);
+}
+
 // A slab that runs through under the walls is no floor there, nor in a window's reveal.
 TEST(Rooms, FloorEndsAtTheWalls) {
   Drawing drawing;
