@@ -238,6 +238,26 @@ bool standsAt(const RayScene& rays, const Upright& upright, double height_m) {
   return rays.occluded(local(-1.0), local(1.0), RayScene::Barrier::opaqueAndGlass);
 }
 
+/// Where an upright piece stands at a height: how a wall with a door was divided changes nothing. As it was
+/// where it does not reach there.
+Upright slicedAt(const Pieces& pieces, const Upright& upright, double height_m) {
+  if (upright.low_m >= height_m || upright.high_m <= height_m) return upright;
+  const glm::dvec2 along(-upright.normal.y, upright.normal.x);
+  const auto placeOf = [&](const glm::dvec2& place) { return glm::dot(place - upright.from, along); };
+  Upright sliced = upright;
+  std::swap(sliced.from, sliced.to);
+  const auto loop = pieces.polygons[upright.piece];
+  for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++) {
+    const glm::dvec3& a = pieces.points[loop[j]];
+    const glm::dvec3& b = pieces.points[loop[i]];
+    if ((a.z < height_m) == (b.z < height_m)) continue;
+    const glm::dvec2 met(a + (height_m - a.z) / (b.z - a.z) * (b - a));
+    if (placeOf(met) < placeOf(sliced.from)) sliced.from = met;
+    if (placeOf(met) > placeOf(sliced.to)) sliced.to = met;
+  }
+  return sliced;
+}
+
 /// Parts of one upright plane in plan, joined where they touch.
 std::vector<PlanLine> wholeLines(const std::vector<Upright>& parts) {
   constexpr double same_m = 1e-6;
@@ -288,7 +308,7 @@ std::vector<PlanLine> linesOf(const Building& building, const RayScene& rays, co
     for (const Upright& upright : uprights) {
       if (upright.low_m <= level.highest_m + footMost_m &&
           standsAt(rays, upright, level.lowest_m + headLeast_m))
-        standing.push_back(upright);
+        standing.push_back(slicedAt(building.model.pieces, upright, level.highest_m + footMost_m));
     }
     for (const PlanLine& line : wholeLines(standing)) add(line.from_m, line.to_m, beyondWall_m);
   }

@@ -181,7 +181,7 @@ inline std::vector<RoomFigures> roomsOf(const Building& building) {
 struct Likeness {
   double floors = 1e-6;
   std::size_t otherSurfaces = 1;  ///< that differ by more than 1e-6, up to 1e-3
-  double volumes = 1e-6;          ///< more where furniture is sampled
+  double volumes = 1e-6;          ///< more where furniture or a slope is sampled
 };
 
 inline void expectSameSurfaces(const Surfaces& found_m2, const Surfaces& expected_m2,
