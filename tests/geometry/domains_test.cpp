@@ -47,6 +47,17 @@ std::set<std::int32_t> upwardAt(const Building& building, double height_m) {
   return domainsOf(building, {0, 0, 1}, [&](const glm::dvec3& c) { return std::abs(c.z - height_m) < 1e-6; });
 }
 
+/// Every face looks the other way.
+Scene reversed(Scene scene) {
+  PolygonList faces;
+  for (std::size_t face = 0; face < scene.faces.size(); ++face) {
+    const auto corners = scene.faces[face];
+    faces.add(std::vector<std::uint32_t>(corners.rbegin(), corners.rend()));
+  }
+  scene.faces = std::move(faces);
+  return scene;
+}
+
 TEST(Domains, ClosedBoxIsOneDomainAndTheOutside) {
   Drawing drawing;
   addBox(drawing, kLow, kHigh);
@@ -251,6 +262,35 @@ TEST(Domains, FloorThatRunsThroughUnderAWallIsParted) {
   addBox(drawing, kLow, {8, 3, 3});
   drawing.face({{4, 0, 0}, {4, 3, 0}, {4, 3, 3}, {4, 0, 3}}, wood, 1);
   expectTwoRooms(buildingOf(drawing.scene));
+}
+
+// Rooms over each other, each drawn with a floor and a ceiling of its own: what is seen from a room is its
+// own, whether all faces look out of their rooms or into them.
+TEST(Domains, FacesBackToBackKeepTheirMaterials) {
+  for (const bool looksIn : {false, true}) {
+    SCOPED_TRACE(looksIn);
+    Drawing drawing;
+    addBox(drawing, {0, 0, 0}, {4, 3, 3}, plaster, 0, {1});
+    addBox(drawing, {0, 0, 3}, {4, 3, 6}, plaster, 1, {0});
+    drawing.face({{0, 0, 3}, {4, 0, 3}, {4, 3, 3}, {0, 3, 3}}, plaster, 0);  // up, out of the lower room
+    drawing.face({{0, 0, 3}, {0, 3, 3}, {4, 3, 3}, {4, 0, 3}}, wood, 1);     // down, out of the upper one
+    const Building building = buildingOf(looksIn ? reversed(drawing.scene) : drawing.scene);
+    ASSERT_EQ(building.rooms.size(), 2U);
+    const Pieces& pieces = building.model.pieces;
+    for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
+      const glm::dvec3 centre = centreOf(building, side / 2);
+      if (std::abs(centre.z - 3.0) > 0.01) continue;
+      const double up = (side % 2 == 0 ? 1.0 : -1.0) * pieces.normal[side / 2].z;
+      const std::uint32_t own = up > 0.0 ? wood : plaster;
+      const std::int32_t domain = building.rooms[up > 0.0 ? 1 : 0].domain;
+      EXPECT_EQ(building.sideDomain[side], pieces.material[side / 2] == own ? domain : -1);
+    }
+    for (const Room& room : building.rooms) {
+      EXPECT_NEAR(room.floorArea_m2, 12.0, exact);
+      EXPECT_NEAR(room.volume_m3, 36.0, 0.01);
+      EXPECT_NEAR(building.domains[static_cast<std::size_t>(room.domain)].area_m2, 66.0, exact);
+    }
+  }
 }
 
 // Air too thin for anything to fly through belongs to the room around it, if to any: it is none by itself.
