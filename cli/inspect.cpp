@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iomanip>
 #include <memory>
+#include <numeric>
 #include <sstream>
 #include <system_error>
 
@@ -112,10 +113,13 @@ std::vector<CountRow> faultRows(const DrawnFaults& faults) {
           {"t_junctions", "points within an edge of another face (T-junctions)", faults.tJunctions}};
 }
 
+/// Those that are not zero.
 std::string countsText(const std::vector<CountRow>& rows) {
   std::ostringstream text;
-  for (const CountRow& row : rows) text << std::setw(12) << row.count << "  " << row.words << '\n';
-  return text.str();
+  for (const CountRow& row : rows) {
+    if (row.count > 0) text << std::setw(12) << row.count << "  " << row.words << '\n';
+  }
+  return text.str().empty() ? "  none\n" : text.str();
 }
 
 /// Panes that light a room from outside.
@@ -232,19 +236,35 @@ std::string colourText(const glm::dvec3& colour, int digits) {
   return text.str();
 }
 
+/// Glazing first, then by falling area: what decides about the light is at the top. Last, in one row, those
+/// that cover less than is shown.
 std::string materialsText(const Building& building, const Totals& totals) {
+  constexpr double leastShown_m2 = 0.005;
+  const std::vector<Material>& materials = building.model.materials;
+  std::vector<std::size_t> order(materials.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    if (materials[a].glazing != materials[b].glazing) return materials[a].glazing;
+    return totals.materialArea_m2[a] > totals.materialArea_m2[b];
+  });
   TextTable table({"material", "area m2", "reflectance", "transmittance", "exitance lm/m2", ""});
-  for (std::size_t i = 0; i < building.model.materials.size(); ++i) {
-    const Material& material = building.model.materials[i];
+  std::size_t others = 0;
+  for (const std::size_t i : order) {
+    const Material& material = materials[i];
     const bool emits = material.exitance_lm_m2 != glm::dvec3(0.0);
+    if (totals.materialArea_m2[i] < leastShown_m2) {
+      ++others;
+      continue;
+    }
     table.add({printable(material.name), number(totals.materialArea_m2[i], 2),
-               colourText(material.reflectance, 3),
+               material.glazing ? "" : colourText(material.reflectance, 3),
                material.glazing ? colourText(material.transmittance, 3) : "",
                emits ? colourText(material.exitance_lm_m2, 1) : "",
                material.glazing && material.transmittanceIsAssumed ? "transmittance assumed"
                : material.mirrorsAsMatt                            ? "metal or mirror, taken as matt"
                                                                    : ""});
   }
+  if (others > 0) table.add({std::to_string(others) + " more, on next to nothing", "0.00", "", "", "", ""});
   return table.text();
 }
 
@@ -269,22 +289,37 @@ std::string roomsText(const Building& building) {
   return table.text();
 }
 
+/// Names of the rooms in a domain.
+std::string roomsIn(const Building& building, std::size_t domain) {
+  std::string names;
+  for (const Room& room : building.rooms) {
+    if (room.domain != static_cast<std::int32_t>(domain)) continue;
+    names += (names.empty() ? "" : ", ") + printable(room.name);
+  }
+  return names;
+}
+
 std::string airText(const Building& building) {
-  TextTable table({"air", "surface m2", "what it is"});
+  TextTable table({"air", "surface m2", "rooms in it"});
   std::size_t dark = 0;
   double dark_m2 = 0.0;
   for (std::size_t i = 0; i < building.domains.size(); ++i) {
     const Domain& domain = building.domains[i];
-    if (!domain.lit) {
+    const std::string rooms = roomsIn(building, i);
+    if (!domain.lit && rooms.empty()) {
       ++dark;
       dark_m2 += domain.area_m2;
       continue;
     }
-    table.add(
-        {std::to_string(i), number(domain.area_m2, 2), domain.open ? "open to the sky" : "closed, lit"});
+    table.add({domain.open  ? "open to the sky"
+               : domain.lit ? "closed, lit"
+                            : "closed, dark",
+               number(domain.area_m2, 2), rooms});
   }
   // Hollows of walls and furniture come by the hundred.
-  if (dark > 0) table.add({"others", number(dark_m2, 2), std::to_string(dark) + " closed and dark"});
+  if (dark > 0)
+    table.add(
+        {std::to_string(dark) + (dark == 1 ? " dark hollow" : " dark hollows"), number(dark_m2, 2), ""});
   return table.text();
 }
 
@@ -305,6 +340,16 @@ std::string stepsText(const Steps& steps) {
   return table.text();
 }
 
+/// By code: what concerns the whole model comes before single faces.
+std::string warningsText(std::vector<Diagnosis> diagnoses) {
+  if (diagnoses.empty()) return "\nNothing to warn of.\n";
+  std::stable_sort(diagnoses.begin(), diagnoses.end(),
+                   [](const Diagnosis& a, const Diagnosis& b) { return a.code < b.code; });
+  std::string text = "\nWarnings (docs/diagnoses.md says what to do about each)\n";
+  for (const Diagnosis& diagnosis : diagnoses) text += "  " + printable(warningText(diagnosis)) + "\n";
+  return text;
+}
+
 std::string inspectionText(const Study& study, const Building& building, const DrawnFaults& faults,
                            const Totals& totals, const std::vector<Diagnosis>& diagnoses,
                            const Steps& steps) {
@@ -316,19 +361,15 @@ std::string inspectionText(const Study& study, const Building& building, const D
   const FileAxes& axes = building.model.axes;
   text += "Units: " + axes.units + (axes.unitsAreGuessed ? " (guessed; --units states it)" : "") +
           "; up: " + axes.upAxis + (axes.upAxisIsGuessed ? " (guessed; --up states it)" : "") + '\n';
-  text += "\nFaults as drawn\n" + countsText(faultRows(faults));
-  text += "\nWhat was read, and what became of it\n";
-  text += countsText(cleanupRows(building.model.counts));
-  text += "\nSize\n" + sizesText(building);
-  text += "\nMaterials\n" + materialsText(building, totals);
-  text += "\nAir that is connected without crossing glass\n" + airText(building);
+  text += "\nRooms\n" + roomsText(building);
   text += "\nWindows: " + std::to_string(building.portals.size()) +
           (building.portals.size() == 1 ? " pane, " : " panes, ") + number(totals.portalArea_m2, 2) + " m2\n";
-  text += "\nRooms\n" + roomsText(building);
-  text += diagnoses.empty() ? "\nNothing to warn of.\n" : "\nWarnings\n";
-  for (const Diagnosis& diagnosis : diagnoses) {
-    text += "  " + printable(warningText(diagnosis)) + "\n";
-  }
+  text += warningsText(diagnoses);
+  text += "\nMaterials\n" + materialsText(building, totals);
+  text += "\nAir that is connected without crossing glass\n" + airText(building);
+  text += "\nFaults of the mesh as drawn\n" + countsText(faultRows(faults));
+  text += "\nWhat was read, and what became of it\n" + countsText(cleanupRows(building.model.counts));
+  text += "\nSize\n" + sizesText(building);
   text += "\nTime and memory\n" + stepsText(steps);
   return text;
 }
@@ -413,8 +454,9 @@ void addInspectCommand(CLI::App& program, std::function<void()>& run) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.footer(
-      "Prints counts before and after the clean-up, materials with reflectance and area, the bodies of air,\n"
-      "windows and rooms, and every warning that a study would give. It solves nothing.\n\n"
+      "Prints rooms and windows, every warning that a study would give, materials with reflectance and "
+      "area,\n"
+      "the bodies of air, and counts before and after the clean-up. It solves nothing.\n\n"
       "Examples:\n"
       "  clerestory inspect office.glb\n"
       "  clerestory inspect plan.obj --units mm --up y\n"

@@ -5,6 +5,7 @@
 #include <geometry/building.hpp>
 #include <geometry/rays.hpp>
 
+#include "backtoback.hpp"
 #include "cut.hpp"
 #include "domains.hpp"
 #include "luminaires.hpp"
@@ -48,6 +49,7 @@ Building makeBuilding(CleanModel model, const Study& study) {
   cutAtPanes(building.model.pieces, building.model.materials);
   placeLuminaires(building, study);
   findDomains(building);
+  partBackToBack(building);
   cutAtCrossings(building);
   RayScene rays(building.model, building.innerGlass);
   const std::vector<RoomAir> airs = airOfRooms(building, rays);

@@ -104,11 +104,12 @@ std::vector<Upright> uprightsOf(const Pieces& pieces) {
                     glm::dvec2(normal),
                     std::numeric_limits<double>::infinity(),
                     -std::numeric_limits<double>::infinity(),
-                    pieces.polygon[piece]};
+                    pieces.polygon[piece],
+                    piece};
     for (const std::uint32_t corner : corners) {
       const double height_m = pieces.points[corner].z;
       add(upright, {glm::dvec2(pieces.points[corner]), glm::dvec2(pieces.points[corner]), upright.normal,
-                    height_m, height_m, upright.polygon});
+                    height_m, height_m, upright.polygon, piece});
     }
     uprights.push_back(upright);
   }

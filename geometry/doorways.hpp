@@ -30,6 +30,7 @@ struct Upright {
   glm::dvec2 from, to, normal;
   double low_m, high_m;
   std::uint32_t polygon;  ///< that it is a part of
+  std::uint32_t piece;
 };
 
 /// Those of all polygons, also where a piece is hidden in a wall.

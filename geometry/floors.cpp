@@ -11,10 +11,10 @@
 #include <deque>
 #include <map>
 #include <optional>
-
-#include <geometry/sampling.hpp>
+#include <span>
 
 #include "floorfaces.hpp"
+#include "rooms.hpp"
 
 namespace clerestory {
 namespace {
@@ -38,6 +38,13 @@ double heightOf(const Pieces& pieces, std::uint32_t piece) {
   return sum_m / static_cast<double>(pieces.polygons[piece].size());
 }
 
+/// That of a piece's plane at a place.
+double heightAt(const Pieces& pieces, std::uint32_t piece, const glm::dvec2& place) {
+  const glm::dvec3& corner = pieces.points[pieces.polygons[piece][0]];
+  const glm::dvec3& normal = pieces.normal[piece];
+  return corner.z - glm::dot(glm::dvec2(normal), place - glm::dvec2(corner)) / normal.z;
+}
+
 /// A look up from a place on a floor.
 struct Look {
   std::uint32_t cell;
@@ -49,7 +56,7 @@ struct Look {
 
 /// A part of a floor, a piece or a face, with looks from all over it.
 struct Tile {
-  std::uint32_t piece;
+  std::uint32_t piece;  ///< itself, or the one that a face lies on
   double height_m, area_m2, outline_m;
   std::vector<Look> looks;
 
@@ -116,6 +123,10 @@ class FloorLooks {
       return seen < 0;
     });
     return lookAt(cell, region, column, level.lowest_m, level.highest_m);
+  }
+
+  [[nodiscard]] bool isInAir(const glm::dvec3& point) const {
+    return clerestory::isInAir(building_, rays_, point, air_.domain);
   }
 
  private:
@@ -192,17 +203,20 @@ std::vector<Tile> tilesOf(const Building& building, const RoomAir& air, const St
     if (std::abs(pieces.normal[piece].z) < upward) continue;
     Tile tile{piece, heightOf(pieces, piece), pieces.area_m2[piece], 0.0, {}};
     if (std::abs(tile.height_m - storey.floor_m) > floorReach_m) continue;
-    std::vector<glm::dvec3> polygon;
-    for (const std::uint32_t corner : pieces.polygons[piece]) polygon.push_back(pieces.points[corner]);
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-      tile.outline_m += glm::length(polygon[(i + 1) % polygon.size()] - polygon[i]);
+    const auto loop = pieces.polygons[piece];
+    const auto at = [&](std::size_t corner) { return glm::dvec2(pieces.points[loop[corner % loop.size()]]); };
+    FloorFace face{pieces.area_m2[piece], 0.0, {}};
+    for (std::size_t i = 0; i < loop.size(); ++i) face.outline_m += glm::length(at(i + 1) - at(i));
+    for (std::size_t i = 2; i < loop.size(); ++i) face.triangles.push_back({at(0), at(i - 1), at(i)});
+    tile.outline_m = face.outline_m;
     const std::uint32_t upper = 2 * piece + (pieces.normal[piece].z > 0.0 ? 0 : 1);
-    const Sequence sequence(0x711e);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      std::optional<Look> look =
-          looks.fromPiece(pointOnPolygon<glm::dvec3>(polygon, sequence(i, 0), sequence(i, 1)));
+    for (const glm::dvec2& place : face.samples(air.map.frame(), count)) {
+      const double height_m = heightAt(pieces, piece, place);
+      std::optional<Look> look = looks.fromPiece({place, height_m});
       if (!look) continue;
-      if (building.sideDomain[upper] != air.domain) look->isStoodOn = false;  // under a foot, a rug
+      // A threshold lies in two airs, and its side in that of most of it.
+      if (look->isStoodOn && building.sideDomain[upper] != air.domain)
+        look->isStoodOn = looks.isInAir({place, height_m + 0.5 * headroom_m});
       tile.looks.push_back(*look);
     }
     if (!tile.looks.empty()) tiles.push_back(std::move(tile));
@@ -222,6 +236,26 @@ bool standsAt(const RayScene& rays, const Upright& upright, double height_m) {
     return glm::vec3(glm::dvec3(middle + side * off_m * upright.normal, height_m) - rays.origin());
   };
   return rays.occluded(local(-1.0), local(1.0), RayScene::Barrier::opaqueAndGlass);
+}
+
+/// Where an upright piece stands at a height: how a wall with a door was divided changes nothing. As it was
+/// where it does not reach there.
+Upright slicedAt(const Pieces& pieces, const Upright& upright, double height_m) {
+  if (upright.low_m >= height_m || upright.high_m <= height_m) return upright;
+  const glm::dvec2 along(-upright.normal.y, upright.normal.x);
+  const auto placeOf = [&](const glm::dvec2& place) { return glm::dot(place - upright.from, along); };
+  Upright sliced = upright;
+  std::swap(sliced.from, sliced.to);
+  const auto loop = pieces.polygons[upright.piece];
+  for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++) {
+    const glm::dvec3& a = pieces.points[loop[j]];
+    const glm::dvec3& b = pieces.points[loop[i]];
+    if ((a.z < height_m) == (b.z < height_m)) continue;
+    const glm::dvec2 met(a + (height_m - a.z) / (b.z - a.z) * (b - a));
+    if (placeOf(met) < placeOf(sliced.from)) sliced.from = met;
+    if (placeOf(met) > placeOf(sliced.to)) sliced.to = met;
+  }
+  return sliced;
 }
 
 /// Parts of one upright plane in plan, joined where they touch.
@@ -274,13 +308,30 @@ std::vector<PlanLine> linesOf(const Building& building, const RayScene& rays, co
     for (const Upright& upright : uprights) {
       if (upright.low_m <= level.highest_m + footMost_m &&
           standsAt(rays, upright, level.lowest_m + headLeast_m))
-        standing.push_back(upright);
+        standing.push_back(slicedAt(building.model.pieces, upright, level.highest_m + footMost_m));
     }
     for (const PlanLine& line : wholeLines(standing)) add(line.from_m, line.to_m, beyondWall_m);
   }
   for (const Doorway& doorway : air.doorways[storey])
     if (!doorway.alongFloors) add(glm::dvec2(doorway.from_m), glm::dvec2(doorway.to_m), beyondDoorway_m);
   return lines;
+}
+
+/// The level's first piece that covers a place.
+std::uint32_t pieceAt(const Pieces& pieces, const Level& level, const glm::dvec2& place) {
+  for (const Tile& tile : level.pieces) {
+    const auto loop = pieces.polygons[tile.piece];
+    const auto isLeft = [&](std::size_t i) {
+      const glm::dvec2 from(pieces.points[loop[i]]);
+      const glm::dvec2 way = glm::dvec2(pieces.points[loop[(i + 1) % loop.size()]]) - from;
+      return way.x * (place.y - from.y) - way.y * (place.x - from.x) >= 0.0;
+    };
+    const bool first = isLeft(0);
+    std::size_t i = 1;
+    while (i < loop.size() && isLeft(i) == first) ++i;
+    if (i == loop.size()) return tile.piece;
+  }
+  return level.pieces.front().piece;
 }
 
 /// Adds what a level has of each region. A face that lies in two for want of a line is shared out.
@@ -303,8 +354,13 @@ void addFaces(const Building& building, const RayScene& rays, const RoomAir& air
     for (const glm::dvec2& place : face.samples(air.map.frame(), count)) {
       const std::optional<Look> look = looks.fromLevel(place, level);
       if (!look || look->region < 0) continue;
-      ofRegion.try_emplace(look->region, Tile{0, level.height_m, face.area_m2, face.outline_m, {}})
-          .first->second.looks.push_back(*look);
+      const auto found = ofRegion.find(look->region);
+      if (found != ofRegion.end()) {
+        found->second.looks.push_back(*look);
+        continue;
+      }
+      const std::uint32_t piece = pieceAt(building.model.pieces, level, place);
+      ofRegion.emplace(look->region, Tile{piece, level.height_m, face.area_m2, face.outline_m, {*look}});
     }
     const bool isSmall = face.area_m2 < sharedLeast_m2;
     const double shareLeast = isSliver ? sliverShare : isSmall ? 0.5 : 1.0 - allShare;
@@ -356,21 +412,52 @@ std::vector<Level> levelsOf(const Building& building, const RayScene& rays, cons
   return levels;
 }
 
-/// Whether a tile of another level may be floor too: a platform and tiles of another thickness are, what lies
+/// Whether tiles of another level may be floor too: a platform and tiles of another thickness are, what lies
 /// over the floor (a bed, a rug) or under something is not.
-bool liesBeside(const Tile& tile, double floor_m) {
-  const double over = tile.shareOf([&](const Look& look) {
-    return std::ranges::any_of(look.column->treads, [&](const Tread& tread) {
-      return std::abs(tread.height_m - floor_m) <= levelTolerance_m && tread.height_m < tile.height_m;
+bool lieBeside(std::span<const Tile* const> tiles, double floor_m) {
+  double area_m2 = 0.0;
+  double over_m2 = 0.0;
+  double stoodOn_m2 = 0.0;
+  for (const Tile* tile : tiles) {
+    const double over = tile->shareOf([&](const Look& look) {
+      return std::ranges::any_of(look.column->treads, [&](const Tread& tread) {
+        return std::abs(tread.height_m - floor_m) <= levelTolerance_m && tread.height_m < tile->height_m;
+      });
     });
-  });
-  const double stoodOn = tile.shareOf([](const Look& look) { return look.isStoodOn; });
-  return over <= 0.5 && stoodOn >= stoodOnLeast;
+    area_m2 += tile->area_m2;
+    over_m2 += over * tile->area_m2;
+    stoodOn_m2 += tile->stoodOn_m2();
+  }
+  return over_m2 <= 0.5 * area_m2 && stoodOn_m2 >= stoodOnLeast * area_m2;
+}
+
+/// Height of the air over a face, in the mean.
+double airOver_m(const Tile& face, const Storey& storey) {
+  double sum_m = 0.0;
+  for (const Look& look : face.looks) {
+    for (const AirSpan& span : look.column->spans)
+      sum_m += std::max(0.0, std::min(span.high_m, storey.end_m) - std::max(span.low_m, face.height_m));
+  }
+  return sum_m / static_cast<double>(face.looks.size());
+}
+
+/// Those of a level's tiles that are floor beside the main one: of each surface all or none, so that it goes
+/// on under a kitchen.
+std::vector<const Tile*> besideMain(const Pieces& pieces, std::span<const Tile* const> tiles,
+                                    double floor_m) {
+  std::map<std::uint32_t, std::vector<const Tile*>> bySurface;
+  for (const Tile* tile : tiles) bySurface[pieces.surface[tile->piece]].push_back(tile);
+  std::vector<const Tile*> result;
+  for (const auto& [surface, own] : bySurface) {
+    if (lieBeside(own, floor_m)) result.insert(result.end(), own.begin(), own.end());
+  }
+  return result;
 }
 
 /// Of a storey's levels the one that most of the region can be stood on, the lower of equals, and what lies
 /// beside it.
-Floor floorOf(const std::vector<Level>& levels, std::int32_t region) {
+Floor floorOf(const Pieces& pieces, const Storey& storey, const std::vector<Level>& levels,
+              std::int32_t region) {
   const Level* main = nullptr;
   double mostStoodOn_m2 = 0.0;
   for (const Level& level : levels) {
@@ -383,16 +470,27 @@ Floor floorOf(const std::vector<Level>& levels, std::int32_t region) {
   if (main == nullptr) return {};
   Floor floor{.height_m = main->height_m, .pieces = {}};
   for (const Level& level : levels) {
-    const auto isFloor = [&](const Tile& tile) { return &level == main || liesBeside(tile, main->height_m); };
+    std::vector<const Tile*> faces;
+    std::vector<const Tile*> own;
+    for (const Tile& face : level.faces[at(region)]) faces.push_back(&face);
+    for (const Tile& tile : level.pieces) {
+      if (regionOf(tile) == region) own.push_back(&tile);
+    }
+    if (&level != main) {
+      faces = besideMain(pieces, faces, main->height_m);
+      std::erase_if(faces, [](const Tile* face) { return face->width_m() < platformLeast_m; });
+      own = besideMain(pieces, own, main->height_m);
+    }
     double area_m2 = 0.0;
-    for (const Tile& face : level.faces[at(region)]) {
-      if (isFloor(face) && (&level == main || face.width_m() >= platformLeast_m)) area_m2 += face.area_m2;
+    double air_m3 = 0.0;
+    for (const Tile* face : faces) {
+      area_m2 += face->area_m2;
+      air_m3 += face->area_m2 * airOver_m(*face, storey);
     }
     if (&level != main && area_m2 < floorAreaLeast_m2) continue;
     floor.area_m2 += area_m2;
-    for (const Tile& tile : level.pieces) {
-      if (regionOf(tile) == region && isFloor(tile)) floor.pieces.push_back(tile.piece);
-    }
+    floor.air_m3 += air_m3;
+    for (const Tile* tile : own) floor.pieces.push_back(tile->piece);
   }
   return floor;
 }
@@ -405,7 +503,7 @@ std::vector<Floor> floorsOf(const Building& building, const RayScene& rays, cons
   const std::vector<Level> levels = levelsOf(building, rays, air, storey, looks);
   std::vector<Floor> floors;
   for (std::int32_t region = 0; region < air.storeys[storey].parted.count; ++region)
-    floors.push_back(floorOf(levels, region));
+    floors.push_back(floorOf(building.model.pieces, air.storeys[storey], levels, region));
   return floors;
 }
 

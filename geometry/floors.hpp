@@ -18,6 +18,7 @@ inline constexpr double floorReach_m = 0.6;       ///< from a storey's floor to 
 /// The floor of a region: its main level with platforms and other levels beside that, furniture or not.
 struct Floor {
   double height_m = 0.0, area_m2 = 0.0;
+  double air_m3 = 0.0;  ///< over it, within the storey
   std::vector<std::uint32_t> pieces;
 };
 

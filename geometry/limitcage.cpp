@@ -21,7 +21,8 @@ namespace {
 using namespace OpenSubdiv;
 using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
 
-constexpr std::size_t mostCorners = 1000;  ///< of one face
+constexpr int mostCorners = 1000;  ///< of one face
+constexpr int mostFaces = 1000;    ///< at one vertex
 
 /// The cage in OpenSubdiv's terms: only its own points, numbered by first use, cut where it is no surface.
 struct LocalCage {
@@ -107,7 +108,7 @@ std::vector<int> cutVertices(const PolygonList& faces, std::span<const EdgeUse> 
 bool isInRange(const Scene& scene, const Cage& cage) {
   for (std::size_t face = 0; face < cage.faces.size(); ++face) {
     const std::size_t size = cage.faces[face].size();
-    if (size < 3 || size > (cage.scheme == Cage::Scheme::loop ? 3 : mostCorners)) return false;
+    if (size < 3 || size > (cage.scheme == Cage::Scheme::loop ? 3U : std::size_t{mostCorners})) return false;
   }
   const auto isPoint = [&](std::uint32_t point) { return point < scene.points.size(); };
   return std::ranges::all_of(cage.faces.corners, isPoint) &&
@@ -252,7 +253,8 @@ std::optional<LimitCage> limitCage(const Scene& scene, const Cage& cage, double 
 bool takesSurfaces(const LimitCage& cage) {
   const Far::TopologyLevel& level = cage.refiner->GetLevel(0);
   for (int vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-    if (level.GetVertexFaces(vertex).size() < 3 && !level.IsVertexBoundary(vertex)) return false;
+    const int faces = level.GetVertexFaces(vertex).size();
+    if (faces > mostFaces || (faces < 3 && !level.IsVertexBoundary(vertex))) return false;
   }
   return true;
 }

@@ -3,6 +3,7 @@
 #include "merge.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 #include "outline.hpp"
@@ -43,6 +44,15 @@ bool holds(const FlatRing& ring, const glm::dvec2& point) {
     }
   }
   return inside;
+}
+
+/// Where several lines nearly meet, their crossings leave rings that have none.
+bool hasSize(const FlatRing& ring, const Tolerances& tolerances) {
+  double outline_m = 0.0;
+  for (std::size_t i = 0, j = ring.flat.size() - 1; i < ring.flat.size(); j = i++)
+    outline_m += glm::length(ring.flat[i] - ring.flat[j]);
+  const double area_m2 = std::abs(ring.area_m2);
+  return area_m2 >= tolerances.degenerateArea_m2 && 4.0 * area_m2 >= tolerances.collinear_m * outline_m;
 }
 
 /// Gives each hole to the smallest outer ring around it.
@@ -112,7 +122,9 @@ void mergeFaces(Soup& soup, const Tolerances& tolerances, std::span<const Face> 
     std::vector<FlatRing> flat;
     for (Loop& ring : outline->rings) {
       dropCollinearCorners(soup.points, tolerances.collinear_m, ring, shared);
-      if (ring.size() >= 3) flat.push_back(flatten(soup, frame, std::move(ring)));
+      if (ring.size() < 3) continue;
+      FlatRing flatRing = flatten(soup, frame, std::move(ring));
+      if (hasSize(flatRing, tolerances)) flat.push_back(std::move(flatRing));
     }
     polygons = nest(std::move(flat));
     if (outline->overlaps) {

@@ -10,8 +10,9 @@
 namespace clerestory {
 namespace {
 
-constexpr double mostOfTheRoom = 0.5;    // of its surface: furniture has names of its own
-constexpr double littleOfOthers = 0.25;  // a wall between two rooms bears the name of one of them
+constexpr double mostOfTheRoom = 0.5;  // of its surface: furniture has names of its own
+constexpr double littleOfOthers =
+    1.0 / 3.0;  // a wall or floor between two rooms bears the name of one of them
 constexpr double mostOfTheFloor = 0.8;
 
 constexpr auto roomWords = std::to_array<std::string_view>(

@@ -22,6 +22,7 @@ namespace clerestory {
 namespace {
 
 constexpr float headroom_m = 1.6F;
+constexpr double slopingShare = 0.2;    // most of a ceiling at one height, for it to be level
 constexpr double enclosedShare = 0.95;  // of rays from covered air outside, for it to be a room
 
 std::size_t at(std::int32_t index) {
@@ -34,9 +35,10 @@ glm::dvec3 centreOf(const Pieces& pieces, std::uint32_t piece) {
   return sum / static_cast<double>(pieces.polygons[piece].size());
 }
 
-/// Air of a region by its cells: volume and the height of most of its ceiling.
+/// Air of a region by its cells: the height of most of its ceiling (the mean one where it slopes), and how
+/// much there is where the storey has no floor, over a stair.
 struct AirMeasure {
-  double volume_m3 = 0.0, plan_m2 = 0.0, ceiling_m = 0.0;
+  double ceiling_m = 0.0, overNoFloor_m3 = 0.0;
 };
 
 AirMeasure measureAir(const RoomAir& air, const Storey& storey, std::int32_t region) {
@@ -45,38 +47,57 @@ AirMeasure measureAir(const RoomAir& air, const Storey& storey, std::int32_t reg
   std::map<long, std::pair<std::size_t, double>> ceilings;  // cells and height, by centimetre
   for (std::uint32_t cell = 0; cell < air.map.size(); ++cell) {
     if (storey.parted.region[cell] != region) continue;
+    const double lowest_m = storey.floor_m - floorReach_m;
     double top_m = -1e300;
     for (const AirSpan& span : air.map.spans(cell)) {
-      const double low_m = std::max(span.low_m, storey.floor_m - floorReach_m);
       const double high_m = std::min(span.high_m, storey.end_m);
-      if (high_m <= low_m) continue;
-      measure.volume_m3 += cell_m2 * (high_m - low_m);
+      if (high_m <= lowest_m) continue;
+      if (span.low_m < lowest_m) measure.overNoFloor_m3 += cell_m2 * (high_m - storey.floor_m);
       top_m = std::max(top_m, high_m);
     }
-    measure.plan_m2 += cell_m2;
     auto& [cells, height_m] = ceilings[std::lround(100.0 * top_m)];
     height_m = top_m;
     ++cells;
   }
   std::size_t most = 0;
+  std::size_t all = 0;
+  double sum_m = 0.0;
   for (const auto& [centimetre, ceiling] : ceilings) {
-    if (ceiling.first <= most) continue;
-    most = ceiling.first;
-    measure.ceiling_m = ceiling.second;
+    const auto& [cells, height_m] = ceiling;
+    all += cells;
+    sum_m += static_cast<double>(cells) * height_m;
+    if (cells <= most) continue;
+    most = cells;
+    measure.ceiling_m = height_m;
   }
+  const bool slopes = static_cast<double>(most) < slopingShare * static_cast<double>(all);
+  if (slopes) measure.ceiling_m = sum_m / static_cast<double>(all);
   return measure;
 }
 
-/// Volume of each domain by the divergence theorem: exact where all its sides are known.
+/// Volumes of the domains whose sides close them, by the divergence theorem. Seldom those of a drawn model:
+/// sides within furniture and joints are told apart by samples.
 std::map<std::int32_t, double> enclosedVolumes(const Building& building) {
+  constexpr double closed = 1e-9;  // of the surface: how far its sides' area vectors are from none together
+  struct Enclosure {
+    double volume_m3 = 0.0, area_m2 = 0.0;
+    glm::dvec3 areaVector_m2{0.0};
+  };
   const Pieces& pieces = building.model.pieces;
-  std::map<std::int32_t, double> volumes_m3;
+  std::map<std::int32_t, Enclosure> enclosures;
   for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
     const std::uint32_t piece = side / 2;
     if (building.sideDomain[side] < 0 || building.innerGlass[piece]) continue;  // the same air on both sides
-    const double sign = side % 2 == 0 ? 1.0 : -1.0;
-    volumes_m3[building.sideDomain[side]] -=
-        sign * pieces.area_m2[piece] * glm::dot(centreOf(pieces, piece), pieces.normal[piece]) / 3.0;
+    const glm::dvec3 outwards_m2 =
+        (side % 2 == 0 ? -1.0 : 1.0) * pieces.area_m2[piece] * pieces.normal[piece];
+    Enclosure& own = enclosures[building.sideDomain[side]];
+    own.volume_m3 += glm::dot(centreOf(pieces, piece), outwards_m2) / 3.0;
+    own.area_m2 += pieces.area_m2[piece];
+    own.areaVector_m2 += outwards_m2;
+  }
+  std::map<std::int32_t, double> volumes_m3;
+  for (const auto& [domain, own] : enclosures) {
+    if (glm::length(own.areaVector_m2) <= closed * own.area_m2) volumes_m3[domain] = own.volume_m3;
   }
   return volumes_m3;
 }
@@ -130,9 +151,7 @@ std::vector<Draft> draftsOf(const Building& building, const RayScene& rays, cons
       room.floor_m = floor.height_m;
       room.floorPieces = std::move(floor.pieces);
       room.ceiling_m = measure.ceiling_m;
-      // Cells at the walls are half in air: the floor's own area mends what they add or leave out.
-      const double mend = floor.area_m2 / measure.plan_m2;
-      room.volume_m3 = measure.volume_m3 * (std::abs(mend - 1.0) < 0.1 ? mend : 1.0);
+      room.volume_m3 = floor.air_m3 + measure.overNoFloor_m3;
       drafts.push_back({std::move(room), &air, s, region});
     }
   }

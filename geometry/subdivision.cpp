@@ -157,17 +157,21 @@ class CageFacets {
       surfaces_.emplace_back(factory, face, cage.points);
   }
 
-  /// Returns the number of facets; `withoutLimit` counts faces that have no limit surface.
-  std::size_t build(const Cage& cage, std::size_t& withoutLimit) {
+  /// Whether every face but holes has a limit surface.
+  [[nodiscard]] bool isWhole() const {
+    for (int face = 0; face < level_.GetNumFaces(); ++face) {
+      if (!level_.IsFaceHole(face) && !surfaces_[static_cast<std::size_t>(face)]) return false;
+    }
+    return true;
+  }
+
+  /// Returns the number of facets; the cage has to be whole.
+  std::size_t build(const Cage& cage) {
     chooseRates();
     std::size_t facets = 0;
     for (int face = 0; face < level_.GetNumFaces(); ++face) {
       if (level_.IsFaceHole(face)) continue;
       const FaceSurface& surface = surfaces_[static_cast<std::size_t>(face)];
-      if (!surface) {
-        ++withoutLimit;
-        continue;
-      }
       evaluateEdges(face, surface);
       const Pattern pattern = makePattern(surface, ratesOf(face));
       const Loop points = pointsOf(face, pattern);
@@ -213,10 +217,6 @@ class CageFacets {
     return static_cast<std::uint32_t>(soup_.points.size() - 1);
   }
 
-  [[nodiscard]] bool isBuilt(int face) const {
-    return !level_.IsFaceHole(face) && surfaces_[static_cast<std::size_t>(face)];
-  }
-
   [[nodiscard]] std::vector<int> ratesOf(int face) const {
     std::vector<int> rates;
     for (const int edge : level_.GetFaceEdges(face))
@@ -229,7 +229,7 @@ class CageFacets {
   void chooseRates() {
     std::set<int> pending;
     for (int face = 0; face < level_.GetNumFaces(); ++face) {
-      if (!isBuilt(face)) continue;
+      if (level_.IsFaceHole(face)) continue;
       pending.insert(face);
       const auto edges = level_.GetFaceEdges(face);
       for (int i = 0; i < edges.size(); ++i) {
@@ -253,7 +253,7 @@ class CageFacets {
       for (const auto& [edge, rate] : raises) {
         edges_[static_cast<std::size_t>(edge)].rate = rate;
         for (const int beside : level_.GetEdgeFaces(edge)) {
-          if (isBuilt(beside)) pending.insert(beside);
+          if (!level_.IsFaceHole(beside)) pending.insert(beside);
         }
       }
     }
@@ -359,21 +359,19 @@ void tessellateCage(const Scene& scene, const Cage& cage, const Tolerances& tole
     note("G210", 1, "a subdivision cage could not be read and was left out");
     return;
   }
-  if (!takesSurfaces(*limit)) {
-    note("G213", 1, "a subdivision cage with two faces folded onto each other was taken as it is drawn");
+  constexpr double finest_m = 1e-4;
+  std::optional<CageFacets> facets;
+  if (takesSurfaces(*limit))
+    facets.emplace(*limit, std::max(cage.tolerance_m, finest_m), tolerances.planar_m, soup);
+  if (!facets || !facets->isWhole()) {
+    note("G213", 1, "a subdivision cage without a limit surface was taken as it is drawn");
     addDrawn(scene, cage, soup);
     return;
   }
   if (cage.boundary == Cage::Boundary::none) {
     note("G211", 1, "a subdivision cage without boundary interpolation was given smooth boundary edges");
   }
-  constexpr double finest_m = 1e-4;
-  std::size_t withoutLimit = 0;
-  CageFacets facets(*limit, std::max(cage.tolerance_m, finest_m), tolerances.planar_m, soup);
-  counts.cageFacets += facets.build(cage, withoutLimit);
-  if (withoutLimit > 0) {
-    note("G212", withoutLimit, "faces of a subdivision cage have no limit surface and were left out");
-  }
+  counts.cageFacets += facets->build(cage);
 }
 
 }  // namespace clerestory

@@ -315,11 +315,12 @@ std::vector<bool> findDuplicates(std::vector<Footprint> footprints, const NameRa
     std::size_t end = first + 1;
     while (end < order.size() && footprints[order[end]].corners == footprints[order[first]].corners) ++end;
     for (std::size_t i = first; i < end; ++i) {
+      // A side that a dropped one has taken stays taken: what is drawn both ways has both.
       for (std::size_t j = first; j < i && !result[order[i]]; ++j) {
-        if (result[order[j]]) continue;
-        const Footprint& kept = footprints[order[j]];
+        const Footprint& earlier = footprints[order[j]];
         const Footprint& later = footprints[order[i]];
-        if (kept.material == later.material || kept.front == later.front) result[order[i]] = true;
+        const bool isSameMaterial = !result[order[j]] && earlier.material == later.material;
+        if (isSameMaterial || earlier.front == later.front) result[order[i]] = true;
       }
     }
     first = end;

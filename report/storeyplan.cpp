@@ -92,8 +92,12 @@ std::string floorsSvg(const Building& building, const Sheet& sheet) {
   for (const std::size_t room : sheet.rooms) {
     std::string path;
     for (const std::uint32_t piece : building.rooms[room].floorPieces) {
+      // All wound alike: surfaces that lie on each other would take each other away.
+      const auto loop = pieces.polygons[piece];
+      std::vector<std::uint32_t> corners(loop.begin(), loop.end());
+      if (pieces.normal[piece].z < 0.0) std::reverse(corners.begin(), corners.end());
       char move = 'M';
-      for (const std::uint32_t corner : pieces.polygons[piece]) {
+      for (const std::uint32_t corner : corners) {
         const glm::dvec2 p = glm::dvec2(pieces.points[corner]) - sheet.box.low;
         path += move + shortNumber(p.x * sheet.scale) + ' ' +
                 shortNumber((sheet.box.high.y - sheet.box.low.y - p.y) * sheet.scale);

@@ -3,6 +3,10 @@
 // cache.
 #include <nlohmann/json.hpp>
 
+#include <array>
+#include <charconv>
+
+#include "../geometry/redrawn.hpp"
 #include "program.hpp"
 
 namespace clerestory {
@@ -45,6 +49,58 @@ TEST(Office, ObjAndGlbGiveTheSameLight) {
     EXPECT_NEAR(means[key], mean, 1e-3 * mean) << key;
   }
   std::cout << "largest difference of a surface's mean: " << 100.0 * worst << " %\n";
+}
+
+/// As OBJ, with the materials of the sample's library.
+std::string objOf(const Scene& scene) {
+  std::string text = "mtllib office.mtl\n";
+  const auto number = [](double value) {
+    std::array<char, 40> digits{};
+    return std::string(digits.data(), std::to_chars(digits.data(), digits.data() + 40, value).ptr);
+  };
+  for (const glm::dvec3& p : scene.points)
+    text += "v " + number(p.x) + ' ' + number(p.y) + ' ' + number(p.z) + '\n';
+  for (std::size_t face = 0; face < scene.faces.size(); ++face) {
+    text += "o " + scene.objects[scene.faceObject[face]] + "\nusemtl " +
+            scene.materials[scene.faceMaterial[face]].name + "\nf";
+    for (const std::uint32_t corner : scene.faces[face]) text += ' ' + std::to_string(corner + 1);
+    text += '\n';
+  }
+  return text;
+}
+
+// Differences are errors of both, which 95 % of them keep to; means of the desks differ by less.
+TEST(Office, HundredThousandTrianglesGiveTheSameLight) {
+  const Workplace place;
+  prepare(place);
+  const Scene office = drawn::read(fs::path(CLERESTORY_SAMPLES) / "office" / "office.glb");
+  const Scene fine = drawn::tessellated(office, 3);
+  ASSERT_GT(fine.faces.size(), 100000U);
+  place.write("drawn.obj", objOf(office));
+  place.write("fine.obj", objOf(fine));
+  const std::string rest =
+      "units = \"m\"\nup = \"z\"\n[materials.\"glazing\"]\ntransmittance = 0.70\n[[grid]]\nname = \"Desks\"\n"
+      "polygon = [[0, 0], [12, 0], [12, 8], [0, 8]]\nspacing = 0.5\ninset = 0.5\n";
+  place.write("drawn.toml", studyOf("drawn.obj") + rest);
+  place.write("fine.toml", studyOf("fine.obj") + rest);
+  const CsvTable expected(place.study("drawn.toml --quiet --accuracy draft", "drawn") / "sensors.csv");
+  const CsvTable found(place.study("fine.toml --quiet --accuracy draft", "fine") / "sensors.csv");
+  ASSERT_EQ(found.size(), expected.size());
+  double sum_lx = 0.0;
+  double expectedSum_lx = 0.0;
+  std::size_t beyond = 0;
+  for (std::size_t row = 0; row < found.size(); ++row) {
+    const double own_lx = found.number(row, "illuminance_lx");
+    const double other_lx = expected.number(row, "illuminance_lx");
+    const double errors_lx = std::hypot(found.number(row, "error_lx"), expected.number(row, "error_lx"));
+    beyond += std::abs(own_lx - other_lx) > errors_lx ? 1 : 0;
+    sum_lx += own_lx;
+    expectedSum_lx += other_lx;
+  }
+  std::cout << "mean of the desks " << 100.0 * (sum_lx / expectedSum_lx - 1.0) << " % off; " << beyond
+            << " of " << found.size() << " sensors beyond the errors of both\n";
+  EXPECT_NEAR(sum_lx, expectedSum_lx, 0.01 * expectedSum_lx);
+  EXPECT_LE(static_cast<double>(beyond), 0.05 * static_cast<double>(found.size()));
 }
 
 TEST(Office, SameBytesOnAnyThreadsAndWithAnyCache) {

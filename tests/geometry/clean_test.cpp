@@ -63,6 +63,22 @@ TEST(Clean, DropsFacesDrawnTwice) {
   EXPECT_EQ(countOf(model, "G202"), 1U);
 }
 
+// Drawn both ways in one material, a sheet has both of its sides: one of another material has none, whichever
+// way it is wound.
+TEST(Clean, SheetDrawnBothWaysHasBothSides) {
+  const Outline sheet = upright(0, 0, 1, 1);
+  const Outline other(sheet.rbegin(), sheet.rend());
+  for (const Outline& wood : {sheet, other}) {
+    Drawing drawing;
+    drawing.face(sheet, 0);
+    drawing.face(other, 0);
+    drawing.face(wood, 2);
+    const CleanModel model = cleanScene(drawing.scene);
+    EXPECT_EQ(model.pieces.size(), 1U);
+    EXPECT_EQ(countOf(model, "G202"), 2U);
+  }
+}
+
 TEST(Clean, SplitsWarpedFaces) {
   Drawing drawing;
   drawing.face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.01}, {0, 1, 0}});

@@ -3,7 +3,9 @@
 // inner glass.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <set>
 
@@ -43,6 +45,17 @@ std::set<std::int32_t> domainsOf(const Building& building, const glm::dvec3& tow
 
 std::set<std::int32_t> upwardAt(const Building& building, double height_m) {
   return domainsOf(building, {0, 0, 1}, [&](const glm::dvec3& c) { return std::abs(c.z - height_m) < 1e-6; });
+}
+
+/// Every face looks the other way.
+Scene reversed(Scene scene) {
+  PolygonList faces;
+  for (std::size_t face = 0; face < scene.faces.size(); ++face) {
+    const auto corners = scene.faces[face];
+    faces.add(std::vector<std::uint32_t>(corners.rbegin(), corners.rend()));
+  }
+  scene.faces = std::move(faces);
+  return scene;
 }
 
 TEST(Domains, ClosedBoxIsOneDomainAndTheOutside) {
@@ -249,6 +262,133 @@ TEST(Domains, FloorThatRunsThroughUnderAWallIsParted) {
   addBox(drawing, kLow, {8, 3, 3});
   drawing.face({{4, 0, 0}, {4, 3, 0}, {4, 3, 3}, {4, 0, 3}}, wood, 1);
   expectTwoRooms(buildingOf(drawing.scene));
+}
+
+// Rooms over each other, each drawn with a floor and a ceiling of its own: what is seen from a room is its
+// own, whether all faces look out of their rooms or into them.
+TEST(Domains, FacesBackToBackKeepTheirMaterials) {
+  for (const bool looksIn : {false, true}) {
+    SCOPED_TRACE(looksIn);
+    Drawing drawing;
+    addBox(drawing, {0, 0, 0}, {4, 3, 3}, plaster, 0, {1});
+    addBox(drawing, {0, 0, 3}, {4, 3, 6}, plaster, 1, {0});
+    drawing.face({{0, 0, 3}, {4, 0, 3}, {4, 3, 3}, {0, 3, 3}}, plaster, 0);  // up, out of the lower room
+    drawing.face({{0, 0, 3}, {0, 3, 3}, {4, 3, 3}, {4, 0, 3}}, wood, 1);     // down, out of the upper one
+    const Building building = buildingOf(looksIn ? reversed(drawing.scene) : drawing.scene);
+    ASSERT_EQ(building.rooms.size(), 2U);
+    const Pieces& pieces = building.model.pieces;
+    for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
+      const glm::dvec3 centre = centreOf(building, side / 2);
+      if (std::abs(centre.z - 3.0) > 0.01) continue;
+      const double up = (side % 2 == 0 ? 1.0 : -1.0) * pieces.normal[side / 2].z;
+      const std::uint32_t own = up > 0.0 ? wood : plaster;
+      const std::int32_t domain = building.rooms[up > 0.0 ? 1 : 0].domain;
+      EXPECT_EQ(building.sideDomain[side], pieces.material[side / 2] == own ? domain : -1);
+    }
+    for (const Room& room : building.rooms) {
+      EXPECT_NEAR(room.floorArea_m2, 12.0, exact);
+      EXPECT_NEAR(room.volume_m3, 36.0, 0.01);
+      EXPECT_NEAR(building.domains[static_cast<std::size_t>(room.domain)].area_m2, 66.0, exact);
+    }
+  }
+}
+
+// Air too thin for anything to fly through belongs to the room around it, if to any: it is none by itself.
+
+/// The room of most tests with a pane, and something thin in it.
+Building litRoomWith(const std::function<void(Drawing&)>& add) {
+  Drawing drawing;
+  addRoomWithPane(drawing, kLow, kHigh, {1.0, 1.0, 3.0, 2.0});
+  add(drawing);
+  return buildingOf(drawing.scene);
+}
+
+void expectOneRoom(const Building& building, double floor_m2, double tolerance_m2) {
+  ASSERT_EQ(building.rooms.size(), 1U);
+  EXPECT_NEAR(building.rooms[0].floorArea_m2, floor_m2, tolerance_m2);
+  ASSERT_EQ(building.portals.size(), 1U);
+  EXPECT_EQ(building.portals[0].room, 0);
+  for (std::size_t domain = 1; domain < building.domains.size(); ++domain) {
+    EXPECT_EQ(building.domains[domain].lit, static_cast<std::int32_t>(domain) == building.rooms[0].domain);
+  }
+}
+
+TEST(Domains, PlatesAMillimetreApartAreInOneRoom) {
+  for (const double gap_m : {0.0011, 0.003, 0.01, 0.03}) {
+    SCOPED_TRACE(gap_m);
+    const Building building = litRoomWith([&](Drawing& drawing) {
+      for (const double z : {1.0, 1.0 + gap_m})
+        drawing.face({{1, 1, z}, {3, 1, z}, {3, 2, z}, {1, 2, z}}, wood);
+    });
+    expectOneRoom(building, 12.0, exact);
+    const std::int32_t own = building.rooms[0].domain;
+    const auto above = [&](double height_m) {
+      return domainsOf(building, {0, 0, 1},
+                       [&](const glm::dvec3& c) { return std::abs(c.z - height_m) < 1e-6; });
+    };
+    const auto below = [&](double height_m) {
+      return domainsOf(building, {0, 0, -1},
+                       [&](const glm::dvec3& c) { return std::abs(c.z - height_m) < 1e-6; });
+    };
+    EXPECT_EQ(above(1.0 + gap_m), std::set<std::int32_t>{own});
+    EXPECT_EQ(below(1.0), std::set<std::int32_t>{own});
+    for (const auto& within : {above(1.0), below(1.0 + gap_m)}) {  // the thinner, the more by chance
+      const std::set<std::int32_t> either{-1, own};
+      EXPECT_TRUE(std::ranges::includes(gap_m < 0.002 ? either : std::set<std::int32_t>{own}, within));
+    }
+  }
+}
+
+// A partition that leaves a wall at 1 degree: the wedge is 35 mm wide at its mouth, 2 m from its edge.
+TEST(Domains, WedgeOfOneDegreeIsInItsRoom) {
+  const double mouth_m = 2.0 * std::tan(std::numbers::pi / 180.0);
+  const Building building = litRoomWith([&](Drawing& drawing) {
+    drawing.face({{1, 3, 0}, {3, 3 - mouth_m, 0}, {3, 3 - mouth_m, 3}, {1, 3, 3}}, wood);
+  });
+  expectOneRoom(building, 12.0, mouth_m);
+}
+
+// Walls that meet at 179 degrees: 35 mm of a bulge over 4 m.
+TEST(Domains, BulgeOfOneDegreeIsInItsRoom) {
+  const double bulge_m = 2.0 * std::tan(0.5 * std::numbers::pi / 180.0);
+  Drawing drawing;
+  addWallWithHole(drawing, 0, 0, 4, 3, 0.0, {1.0, 1.0, 3.0, 2.0});
+  drawing.face(upright(1.0, 1.0, 3.0, 2.0), glass);
+  drawing.face({{0, 0, 0}, {0, 3, 0}, {0, 3, 3}, {0, 0, 3}});
+  drawing.face({{4, 0, 0}, {4, 3, 0}, {4, 3, 3}, {4, 0, 3}});
+  drawing.face({{0, 3, 0}, {2, 3 + bulge_m, 0}, {2, 3 + bulge_m, 3}, {0, 3, 3}});
+  drawing.face({{4, 3, 0}, {2, 3 + bulge_m, 0}, {2, 3 + bulge_m, 3}, {4, 3, 3}});
+  for (const double z : {0.0, 3.0})
+    drawing.face({{0, 0, z}, {4, 0, z}, {4, 3, z}, {2, 3 + bulge_m, z}, {0, 3, z}});
+  const Building building = buildingOf(drawing.scene);
+  expectOneRoom(building, 12.0 + 2.0 * bulge_m, exact);
+  EXPECT_NEAR(building.rooms[0].volume_m3, 3.0 * (12.0 + 2.0 * bulge_m), 1e-6);
+}
+
+// What nothing flies through joins no rooms: a keyhole of 20 x 50 mm leaves the room behind it dark.
+TEST(Domains, KeyholeJoinsNothingAndAHatchDoes) {
+  for (const double width_m : {0.02, 0.30}) {
+    SCOPED_TRACE(width_m);
+    Drawing drawing;
+    addRoomWithPane(drawing, kLow, {8, 3, 3}, {1.0, 1.0, 3.0, 2.0});
+    const double low = 1.5 - 0.5 * width_m;
+    const double top_m = 1.0 + 2.5 * width_m;
+    const auto wall = [&](double y0, double z0, double y1, double z1) {
+      drawing.face({{4, y0, z0}, {4, y1, z0}, {4, y1, z1}, {4, y0, z1}});
+    };
+    wall(0, 0, low, 3);
+    wall(low + width_m, 0, 3, 3);
+    wall(low, 0, low + width_m, 1.0);
+    wall(low, top_m, low + width_m, 3);
+    const Building building = buildingOf(drawing.scene);
+    ASSERT_EQ(building.rooms.size(), 2U);
+    EXPECT_EQ(building.rooms[0].domain == building.rooms[1].domain, width_m > 0.06);
+    for (const Room& room : building.rooms) EXPECT_NEAR(room.floorArea_m2, 12.0, exact);
+    ASSERT_EQ(building.portals.size(), 1U);
+    EXPECT_EQ(building.portals[0].room, 0);
+    const Room& behind = building.rooms[1];
+    EXPECT_EQ(building.domains[static_cast<std::size_t>(behind.domain)].lit, width_m > 0.06);
+  }
 }
 
 TEST(Domains, DoNotDependOnTheOrderOfFaces) {

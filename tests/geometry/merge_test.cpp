@@ -140,6 +140,25 @@ TEST(Merge, OverlappingFacesCountOnce) {
   EXPECT_EQ(countOf(single, "G204"), 1U);
 }
 
+/// Five lines of one outline cross within a tenth of a millimetre: what lies between the crossings has no
+/// size.
+TEST(Merge, RingsWithoutSizeAreNoSurfaces) {
+  Drawing drawing;
+  drawing.face({{1.994775, -0.144480, 0},
+                {-1.994776, 0.144453, 0},
+                {-1.482509, -1.342448, 0},
+                {1.482520, 1.342436, 0},
+                {0.842514, 1.813883, 0},
+                {-0.842406, -1.813933, 0},
+                {0.713906, -1.868245, 0},
+                {-0.713916, 1.868241, 0},
+                {-1.624872, 1.166100, 0},
+                {1.624897, -1.166066, 0}});
+  const CleanModel model = cleanScene(drawing.scene);
+  EXPECT_EQ(countOf(model, "G207"), 0U);
+  EXPECT_NEAR(totalArea_m2(model), 5.8065, 1e-4);
+}
+
 TEST(Merge, RegionsThatOnlyTouchAtACornerComeApart) {
   Drawing drawing;
   drawing.face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});

@@ -157,20 +157,22 @@ inline Surfaces surfacesOf(const CleanModel& model) {
   return surfaces_m2;
 }
 
-/// A room: area of its floor, number and area of its panes.
-using RoomFigures = std::array<double, 3>;
+/// A room: area of its floor, number and area of its panes, volume.
+using RoomFigures = std::array<double, 4>;
 
 inline std::vector<RoomFigures> roomsOf(const Building& building) {
   std::vector<RoomFigures> rooms;
-  for (const Room& room : building.rooms) rooms.push_back({room.floorArea_m2, 0.0, 0.0});
+  for (const Room& room : building.rooms) rooms.push_back({room.floorArea_m2, 0.0, 0.0, room.volume_m3});
   for (const Portal& portal : building.portals) {
     RoomFigures& room = rooms.at(static_cast<std::size_t>(portal.room));
     room[1] += 1.0;
     room[2] += building.model.pieces.area_m2[portal.piece];
   }
-  std::sort(rooms.begin(), rooms.end(), [](const RoomFigures& a, const RoomFigures& b) {
-    return std::lround(1e4 * a[0]) != std::lround(1e4 * b[0]) ? a[0] < b[0] : a[2] < b[2];
-  });
+  const auto rounded = [](const RoomFigures& room) {
+    return std::array{std::lround(1e4 * room[0]), std::lround(1e4 * room[2]), std::lround(1e2 * room[3])};
+  };
+  std::sort(rooms.begin(), rooms.end(),
+            [&](const RoomFigures& a, const RoomFigures& b) { return rounded(a) < rounded(b); });
   return rooms;
 }
 
@@ -179,6 +181,7 @@ inline std::vector<RoomFigures> roomsOf(const Building& building) {
 struct Likeness {
   double floors = 1e-6;
   std::size_t otherSurfaces = 1;  ///< that differ by more than 1e-6, up to 1e-3
+  double volumes = 1e-6;          ///< more where furniture or a slope is sampled
 };
 
 inline void expectSameSurfaces(const Surfaces& found_m2, const Surfaces& expected_m2,
@@ -204,6 +207,7 @@ inline void expectSame(const Scene& other, const Building& expected, const Liken
     EXPECT_NEAR(rooms[room][0] / expectedRooms[room][0], 1.0, likeness.floors);
     EXPECT_EQ(rooms[room][1], expectedRooms[room][1]);
     EXPECT_NEAR(rooms[room][2], expectedRooms[room][2], 1e-6 * expectedRooms[room][2]);
+    EXPECT_NEAR(rooms[room][3] / expectedRooms[room][3], 1.0, likeness.volumes);
   }
 }
 

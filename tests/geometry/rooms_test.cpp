@@ -172,6 +172,41 @@ TEST(Rooms, SurfacesInOnePlaneCountOnce) {
   EXPECT_NEAR(building.rooms[0].floorArea_m2, 12.0, exact);
 }
 
+// Tiles 6 mm lower than the parquet are floor under a cupboard too, where they have been cut at its foot.
+TEST(Rooms, FloorOfTilesGoesOnUnderACupboard) {
+  Drawing drawing;
+  addBox(drawing, {0, 0, -0.006}, {4, 3, 2.7}, plaster, 0, {0});
+  drawing.face({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}}, wood, addObject(drawing, "parquet"));
+  drawing.face({{0, 2, -0.006}, {4, 2, -0.006}, {4, 3, -0.006}, {0, 3, -0.006}}, plaster,
+               addObject(drawing, "tiles"));
+  addBox(drawing, {1, 2.4, -0.006}, {3, 3, 0.9}, wood, addObject(drawing, "cupboard"), {0, 4});
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 1U);
+  EXPECT_NEAR(building.rooms[0].floorArea_m2, 12.0, exact);
+  double pieces_m2 = 0.0;
+  std::size_t tiles = 0;
+  for (const std::uint32_t piece : building.rooms[0].floorPieces) {
+    pieces_m2 += building.model.pieces.area_m2[piece];
+    tiles += building.model.surfaces[building.model.pieces.surface[piece]].name == "tiles" ? 1 : 0;
+  }
+  EXPECT_NEAR(pieces_m2, 12.0, exact);
+  EXPECT_GE(tiles, 2U) << "they are cut at the cupboard's foot";
+}
+
+// Under a gable no height is that of most of the ceiling: the mean one stands for it. The volume is exact.
+TEST(Rooms, SlopingCeilingHasAMeanHeight) {
+  Drawing drawing;
+  drawing.face({{0, 0, 0}, {4, 0, 0}, {4, 6, 0}, {0, 6, 0}});
+  for (const double x : {0.0, 4.0}) drawing.face({{x, 0, 0}, {x, 6, 0}, {x, 6, 1}, {x, 0, 1}});
+  for (const double y : {0.0, 6.0}) drawing.face({{0, y, 0}, {4, y, 0}, {4, y, 1}, {2, y, 3}, {0, y, 1}});
+  for (const double x : {0.0, 4.0}) drawing.face({{x, 0, 1}, {x, 6, 1}, {2, 6, 3}, {2, 0, 3}});
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 1U);
+  EXPECT_NEAR(building.rooms[0].floorArea_m2, 24.0, 1e-6);
+  EXPECT_NEAR(building.rooms[0].volume_m3, 48.0, 1e-6);
+  EXPECT_NEAR(building.rooms[0].ceiling_m, 2.0, 0.03);
+}
+
 // A slab that runs through under the walls is no floor there, nor in a window's reveal.
 TEST(Rooms, FloorEndsAtTheWalls) {
   Drawing drawing;

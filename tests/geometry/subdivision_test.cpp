@@ -6,8 +6,10 @@
 #include <opensubdiv/far/topologyRefinerFactory.h>
 
 #include <array>
+#include <cmath>
 #include <map>
 #include <memory>
+#include <numbers>
 
 #include "drawn.hpp"
 
@@ -219,6 +221,24 @@ TEST(Subdivision, FoldedFacesAreTakenAsDrawn) {
   const CleanModel model = cleanScene(scene);
   EXPECT_EQ(countOf(model, "G213"), 1U);
   EXPECT_GT(totalArea_m2(model), 0.99);
+}
+
+/// OpenSubdiv reads beyond its arrays from 16,000 faces at a point on.
+TEST(Subdivision, FansOfManyFacesAreTakenAsDrawn) {
+  constexpr std::uint32_t blades = 20000;
+  Scene scene = Drawing().scene;
+  scene.points = {{0, 0, 1}};
+  Cage cage;
+  cage.scheme = Cage::Scheme::loop;
+  for (std::uint32_t i = 0; i < blades; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / blades;
+    scene.points.emplace_back(100.0 * std::cos(angle), 100.0 * std::sin(angle), 0.0);
+    cage.faces.add(std::vector<std::uint32_t>{0, 1 + i, 1 + (i + 1) % blades});
+  }
+  scene.cages.push_back(cage);
+  const CleanModel model = cleanScene(scene);
+  EXPECT_EQ(countOf(model, "G213"), 1U);
+  EXPECT_GT(totalArea_m2(model), 0.999 * 1e4 * std::numbers::pi);
 }
 
 /// Three square sheets of one cage meet at an edge, which is a boundary of each.

@@ -97,7 +97,7 @@ struct Room {
   double floorArea_m2 = 0.0;
   double volume_m3 = 0.0;
   double floor_m = 0.0;    ///< height of its floor
-  double ceiling_m = 0.0;  ///< height of most of its ceiling
+  double ceiling_m = 0.0;  ///< height of most of its ceiling; the mean one where that slopes
   std::vector<std::uint32_t> floorPieces;
 };
 
