@@ -228,6 +228,18 @@ const use = async (report, isFirst) => {
     assert.deepEqual(wide, []);
   });
 
+  if (isFirst) {
+    await step("a plan's numbers can be read on paper", async () => {
+      const before = page.viewportSize();
+      await page.emulateMedia({ media: "print" });
+      await page.setViewportSize({ width: 672, height: 900 });
+      const size_px = await page.locator("svg.plan").first().evaluate((plan) => plan.getScreenCTM().a * 10);
+      await page.emulateMedia({ media: null });
+      await page.setViewportSize(before);
+      assert.ok(size_px * 0.75 >= 5, `${size_px * 0.75} pt`); // the smallest type of a printed drawing
+    });
+  }
+
   if (pictures) {
     for (const [shot, theme, width] of [["desktop", "light", 1440], ["tablet", "light", 820], ["dark", "dark", 1440], ["phone", "light", 390]]) {
       await page.evaluate((value) => (document.documentElement.dataset.theme = value), theme);
