@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <geometry/parallel.hpp>
 
@@ -32,7 +33,7 @@ std::vector<std::uint32_t> piecesOf(const Building& building, std::int32_t domai
   return pieces;
 }
 
-/// A domain's air among what an upright line meets, from below. Of two that touch the lower one counts.
+/// A domain's air among what an upright line meets, from below. What touches is one surface.
 AirColumn columnOf(const Building& building, const RayScene& rays, std::int32_t domain,
                    const glm::dvec2& place, std::span<const Meeting> meetings) {
   constexpr double touching_m = 1e-4;
@@ -42,18 +43,28 @@ AirColumn columnOf(const Building& building, const RayScene& rays, std::int32_t 
     return isInAir(building, rays, {place, middle_m}, domain);
   };
   AirColumn column;
-  const Meeting* last = nullptr;
+  double last_m = 0.0;
   bool lastIsOurs = false;
-  for (const Meeting& meeting : meetings) {
-    if (last != nullptr && meeting.height_m < last->height_m + touching_m) continue;
-    const double slope = building.model.pieces.normal[meeting.piece].z;
-    const std::uint32_t lower = 2 * meeting.piece + (slope < 0.0 ? 0U : 1U);
-    const bool lowerIsOurs = building.sideDomain[lower] == domain;
-    if (last != nullptr && isAir(lastIsOurs, lowerIsOurs, 0.5 * (last->height_m + meeting.height_m)))
-      column.spans.push_back({last->height_m, meeting.height_m});
-    if (std::abs(slope) > upward) column.treads.push_back({meeting.height_m, meeting.piece});
-    last = &meeting;
-    lastIsOurs = building.sideDomain[lower ^ 1U] == domain;
+  for (std::size_t i = 0; i < meetings.size();) {
+    const double height_m = meetings[i].height_m;
+    const bool isFirst = i == 0;
+    bool lowerIsOurs = false;
+    bool upperIsOurs = false;
+    std::optional<Tread> tread;
+    for (; i < meetings.size() && meetings[i].height_m < height_m + touching_m; ++i) {
+      const std::uint32_t piece = meetings[i].piece;
+      const double slope = building.model.pieces.normal[piece].z;
+      const std::uint32_t lower = 2 * piece + (slope < 0.0 ? 0U : 1U);
+      const bool isUnderOurs = building.sideDomain[lower ^ 1U] == domain;
+      lowerIsOurs = lowerIsOurs || building.sideDomain[lower] == domain;
+      if (std::abs(slope) > upward && (!tread || (isUnderOurs && !upperIsOurs))) tread = {height_m, piece};
+      upperIsOurs = upperIsOurs || isUnderOurs;
+    }
+    if (!isFirst && isAir(lastIsOurs, lowerIsOurs, 0.5 * (last_m + height_m)))
+      column.spans.push_back({last_m, height_m});
+    if (tread) column.treads.push_back(*tread);
+    last_m = height_m;
+    lastIsOurs = upperIsOurs;
   }
   return column;
 }
