@@ -64,19 +64,20 @@ void move(Pieces& pieces, std::uint32_t piece, const glm::dvec3& way_m) {
   }
 }
 
-/// Takes a side out of its domain.
+/// Takes a side out of its domain and room.
 void darken(Building& building, std::uint32_t side) {
   std::int32_t& domain = building.sideDomain[side];
   if (domain >= 0)
     building.domains[static_cast<std::size_t>(domain)].area_m2 -= building.model.pieces.area_m2[side / 2];
   domain = -1;
+  building.sideRoom[side] = -1;
 }
 
 }  // namespace
 
-void partBackToBack(Building& building) {
+bool partBackToBack(Building& building) {
   const std::vector<Pair> pairs = pairsOf(building.model);
-  if (pairs.empty()) return;
+  if (pairs.empty()) return false;
   const std::vector<double> fronts_m2 = frontsSeen(building, pairs);
   const auto frontsFrom = [&](std::uint32_t side) {
     const std::int32_t domain = building.sideDomain[side];
@@ -93,6 +94,7 @@ void partBackToBack(Building& building) {
     move(building.model.pieces, a, way_m);
     move(building.model.pieces, b, -way_m);
   }
+  return true;
 }
 
 }  // namespace clerestory

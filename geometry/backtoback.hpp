@@ -9,7 +9,8 @@ namespace clerestory {
 /// Gives each side of such a pair to one of the two pieces, which keeps its material and name there. Models
 /// wind their faces either towards a room or out of it: a side belongs to the piece that is wound as most of
 /// what is seen from there. The two are parted by the width of a ray's offset, and what is between is dark.
-/// Domains have to be known; `building.sideDomain` and the domains' areas follow.
-void partBackToBack(Building& building);
+/// Rooms have to be known, of which the exact floors stay; sides' domains and rooms and the domains' areas
+/// follow. False where there is no pair.
+bool partBackToBack(Building& building);
 
 }  // namespace clerestory

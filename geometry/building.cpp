@@ -49,12 +49,12 @@ Building makeBuilding(CleanModel model, const Study& study) {
   cutAtPanes(building.model.pieces, building.model.materials);
   placeLuminaires(building, study);
   findDomains(building);
-  partBackToBack(building);
   cutAtCrossings(building);
   RayScene rays(building.model, building.innerGlass);
   const std::vector<RoomAir> airs = airOfRooms(building, rays);
   if (cutAtDoorways(building, airs)) rays = RayScene(building.model, building.innerGlass);
   findRooms(building, rays, airs);
+  if (partBackToBack(building)) rays = RayScene(building.model, building.innerGlass);
   checkLuminaires(building);
   layGrids(building, study, rays);
   return building;

@@ -204,19 +204,26 @@ std::vector<Tile> tilesOf(const Building& building, const RoomAir& air, const St
     Tile tile{piece, heightOf(pieces, piece), pieces.area_m2[piece], 0.0, {}};
     if (std::abs(tile.height_m - storey.floor_m) > floorReach_m) continue;
     const auto loop = pieces.polygons[piece];
-    const auto at = [&](std::size_t corner) { return glm::dvec2(pieces.points[loop[corner % loop.size()]]); };
+    const auto cornerAt = [&](std::size_t corner) {
+      return glm::dvec2(pieces.points[loop[corner % loop.size()]]);
+    };
     FloorFace face{pieces.area_m2[piece], 0.0, {}};
-    for (std::size_t i = 0; i < loop.size(); ++i) face.outline_m += glm::length(at(i + 1) - at(i));
-    for (std::size_t i = 2; i < loop.size(); ++i) face.triangles.push_back({at(0), at(i - 1), at(i)});
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      face.outline_m += glm::length(cornerAt(i + 1) - cornerAt(i));
+    for (std::size_t i = 2; i < loop.size(); ++i)
+      face.triangles.push_back({cornerAt(0), cornerAt(i - 1), cornerAt(i)});
     tile.outline_m = face.outline_m;
     const std::uint32_t upper = 2 * piece + (pieces.normal[piece].z > 0.0 ? 0 : 1);
     for (const glm::dvec2& place : face.samples(air.map.frame(), count)) {
       const double height_m = heightAt(pieces, piece, place);
       std::optional<Look> look = looks.fromPiece({place, height_m});
       if (!look) continue;
-      // A threshold lies in two airs, and its side in that of most of it.
-      if (look->isStoodOn && building.sideDomain[upper] != air.domain)
-        look->isStoodOn = looks.isInAir({place, height_m + 0.5 * headroom_m});
+      // A threshold lies in two airs, and its side in that of most of it: one under an outer door is
+      // outdoors, of one between rooms the place tells.
+      const std::int32_t own = building.sideDomain[upper];
+      const bool isOutdoors = own >= 0 && building.domains[at(own)].open;
+      if (look->isStoodOn && own != air.domain)
+        look->isStoodOn = !isOutdoors && looks.isInAir({place, height_m + 0.5 * headroom_m});
       tile.looks.push_back(*look);
     }
     if (!tile.looks.empty()) tiles.push_back(std::move(tile));
