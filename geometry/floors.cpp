@@ -15,6 +15,7 @@
 
 #include "floorfaces.hpp"
 #include "rooms.hpp"
+#include "stacks.hpp"
 
 namespace clerestory {
 namespace {
@@ -36,13 +37,6 @@ double heightOf(const Pieces& pieces, std::uint32_t piece) {
   double sum_m = 0.0;
   for (const std::uint32_t corner : pieces.polygons[piece]) sum_m += pieces.points[corner].z;
   return sum_m / static_cast<double>(pieces.polygons[piece].size());
-}
-
-/// That of a piece's plane at a place.
-double heightAt(const Pieces& pieces, std::uint32_t piece, const glm::dvec2& place) {
-  const glm::dvec3& corner = pieces.points[pieces.polygons[piece][0]];
-  const glm::dvec3& normal = pieces.normal[piece];
-  return corner.z - glm::dot(glm::dvec2(normal), place - glm::dvec2(corner)) / normal.z;
 }
 
 /// A look up from a place on a floor.
@@ -215,7 +209,7 @@ std::vector<Tile> tilesOf(const Building& building, const RoomAir& air, const St
     tile.outline_m = face.outline_m;
     const std::uint32_t upper = 2 * piece + (pieces.normal[piece].z > 0.0 ? 0 : 1);
     for (const glm::dvec2& place : face.samples(air.map.frame(), count)) {
-      const double height_m = heightAt(pieces, piece, place);
+      const double height_m = heightOver(pieces, piece, place);
       std::optional<Look> look = looks.fromPiece({place, height_m});
       if (!look) continue;
       // A threshold lies in two airs, and its side in that of most of it: one under an outer door is
