@@ -148,7 +148,9 @@ PortalLight<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalS
   const auto count = static_cast<std::uint32_t>(std::ceil(near ? std::max(samples, nearSamples) : samples));
   PortalLight<K> result;
   Columns<K> sum;
+  Columns<K> squared;
   float weights = 0.0F;
+  float squares = 0.0F;
   for (std::uint32_t i = 0; i < count; ++i) {
     const glm::vec3 point =
         pointOnPolygon<glm::vec3>(element.corners, onElement(i, 2), onElement(i, 3)) + lift;
@@ -162,14 +164,27 @@ PortalLight<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalS
     const glm::vec3 onPane = eye + (glm::dot(portal.centre - eye, portal.inward) / approach) * direction;
     const float weight = static_cast<float>(seen.solidAngle_sr()) * cosine;
     weights += weight;
+    squares += weight * weight;
     ++result.rays;
     if (world.rays.occluded(point, onPane, RayScene::Barrier::opaque)) continue;
     result.visible += weight;
-    sum += weight * light.behindPortal(own, point, onPane);
+    const Columns<K> luminance = light.behindPortal(own, point, onPane);
+    sum += weight * luminance;
+    squared += weight * weight * luminance;
   }
   if (weights <= 0.0F) return result;
   result.visible = std::min(result.visible / weights, 1.0F);
-  result.illuminance_lx = (std::numbers::pi_v<float> * sight.formFactor / weights) * sum;
+  // Weights and what is seen go together: on the floor, the higher on a pane the more of it counts and the
+  // brighter is the sky there. A ratio of means is too dark by what the two share, which for even points in
+  // four dimensions is n^(-5/4) of what single samples do (Tin 1965).
+  const auto n = static_cast<float>(count);
+  const float share = std::pow(n, -1.25F);
+  const Columns<K> ratio = (1.0F / weights) * sum;
+  const Columns<K> missed = (share / (1.0F - share) * n / (weights * weights)) * (squared - squares * ratio);
+  const Columns<K> luminance = ratio + missed;
+  for (int c = 0; c < K; ++c) {
+    result.illuminance_lx[c] = std::max(std::numbers::pi_v<float> * sight.formFactor * luminance[c], 0.0F);
+  }
   return result;
 }
 

@@ -52,7 +52,7 @@ struct PortalLight {
   std::uint64_t rays = 0;
 };
 
-/// Light of an element from a portal, by `samples` pairs of points at least.
+/// Light of an element from a portal, by `samples` (>= 2) pairs of points at least. and at least two.
 template <int K>
 PortalLight<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
                                       const Receiver& element, const PortalSight& sight, float samples);
