@@ -18,6 +18,7 @@ constexpr std::uint32_t raysOfPortal = 256;  // for its mean luminance
 constexpr float raysLeast = 2.0F;            // of a polygon
 constexpr int roundsMost = 3;                // of twice as many
 constexpr float missedBetween = 0.5F;        // samples: of one sample's share of a pane's mean light
+constexpr float grainLeast = 2.0F;           // times the mean of a pane's rays
 constexpr float nearFormFactor = 0.08F;      // above it a polygon's points are chosen by solid angle
 
 /// Mean luminance that a portal shows inside, by cosine over its area.
@@ -45,6 +46,20 @@ Columns<K> meanLuminance(const SolvedLight<K>& light, std::uint32_t side, std::s
   for (std::uint32_t i = 0; i < points; ++i)
     sum += light.exitance(hit, pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1)), false);
   return (std::numbers::inv_pi_v<float> / static_cast<float>(points)) * sum;
+}
+
+/// A point of the convex `polygon`, uniform by area for uniform u, v in [0, 1). In a parallelogram u and v
+/// run along its sides, so that points are even along each by itself: of a strip along a side, as the sky
+/// between an overhang and a sill, n of them are off by about 1/n, and not by the n^(-3/4) of a fan of
+/// triangles.
+glm::vec3 pointOf(std::span<const glm::vec3> polygon, float u, float v) {
+  if (polygon.size() == 4) {
+    const glm::vec3 side = polygon[1] - polygon[0];
+    const glm::vec3 rise = polygon[3] - polygon[0];
+    const float off = glm::distance(polygon[2], polygon[1] + rise);
+    if (off < 1e-3F * glm::length(side + rise)) return polygon[0] + u * side + v * rise;
+  }
+  return pointOnPolygon<glm::vec3>(polygon, u, v);
 }
 
 }  // namespace
@@ -136,7 +151,7 @@ void DirectField<K>::sample(std::vector<Part>& parts, std::span<const std::uint3
         weight = approach < 0.0F ? glm::dot(direction, normal) : 0.0F;
         onPolygon = point + (height_m / approach) * direction;
       } else {
-        onPolygon = pointOnPolygon<glm::vec3>(shiner.polygon, sequence(i, 0), sequence(i, 1));
+        onPolygon = pointOf(shiner.polygon, sequence(i, 0), sequence(i, 1));
         const glm::vec3 way = onPolygon - point;
         const float square = glm::dot(way, way);
         weight = -glm::dot(way, normal) * glm::dot(way, shiner.inward) / (square * square);
@@ -156,6 +171,7 @@ void DirectField<K>::sample(std::vector<Part>& parts, std::span<const std::uint3
     part.sum += weight * luminance;
     part.strengths += weight * strength;
     part.squares += weight * strength * strength;
+    part.most = std::max(part.most, weight * strength);
   };
   const auto shinerOf = [&](const Probes& probes, std::size_t i) -> const Shiner& {
     return *parts[probes.part[i]].shiner;
@@ -199,9 +215,18 @@ DirectLight<K> DirectField<K>::lightOf(const Part& part) const {
           scale * std::hypot(std::sqrt(variance) / std::pow(rays, 0.75F), missed), part.rays};
 }
 
+// What rays bring anyway is in the deviation; a single one stands out where it brings more than twice that.
 template <int K>
-DirectLight<K> DirectField<K>::light(const glm::vec3& point, const glm::vec3& normal, float rays,
-                                     float deviationMost, float known_lx, std::uint64_t key) const {
+float DirectField<K>::grainOf(const Part& part) const {
+  if (part.shiner->portal == nullptr || !(part.weights > 0.0F)) return 0.0F;
+  const float mean = part.strengths / static_cast<float>(part.rays);
+  return std::numbers::pi_v<float> * part.formFactor * std::max(part.most - grainLeast * mean, 0.0F) /
+         part.weights;
+}
+
+template <int K>
+MeasuredLight<K> DirectField<K>::light(const glm::vec3& point, const glm::vec3& normal, float rays,
+                                       float deviationMost, float known_lx, std::uint64_t key) const {
   std::vector<Part> parts = partsAt(point, normal);
   float all = 0.0F;
   for (const Part& part : parts) all += part.formFactor * part.shiner->strength;
@@ -216,7 +241,11 @@ DirectLight<K> DirectField<K>::light(const glm::vec3& point, const glm::vec3& no
     DirectLight<K> sum = fromLamps;
     for (const Part& part : parts) sum += lightOf(part);
     const float allowed_lx = deviationMost * (known_lx + world_.layout.strength(sum.illuminance_lx));
-    if (round == roundsMost || sum.deviation_lx <= allowed_lx) return sum;
+    if (round == roundsMost || sum.deviation_lx <= allowed_lx) {
+      float grain_lx = 0.0F;
+      for (const Part& part : parts) grain_lx = std::max(grain_lx, grainOf(part));
+      return {sum, grain_lx};
+    }
     const float share_lx = allowed_lx / std::sqrt(static_cast<float>(parts.size() + 1));
     for (std::size_t p = 0; p < parts.size(); ++p) {
       if (lightOf(parts[p]).deviation_lx > share_lx) counts[p] *= 2;

@@ -10,6 +10,13 @@
 
 namespace clerestory {
 
+/// Direct light as rays tell it.
+template <int K>
+struct MeasuredLight {
+  DirectLight<K> light;
+  float grain_lx = 0.0F;  ///< what a single ray brought that met the bright among the dark; 0 where none did
+};
+
 /// All that shines on the surfaces of a domain: its portals, emitting sides, bright parts and luminaires.
 template <int K>
 class DirectField {
@@ -24,8 +31,8 @@ class DirectField {
   /// Light at a point by about `rays` rays, shared out by what each polygon would send unhidden; then by more
   /// where its deviation is above `deviationMost` of all light, `known_lx` of other light among it. `key`
   /// seeds them.
-  [[nodiscard]] DirectLight<K> light(const glm::vec3& point, const glm::vec3& normal, float rays,
-                                     float deviationMost, float known_lx, std::uint64_t key) const;
+  [[nodiscard]] MeasuredLight<K> light(const glm::vec3& point, const glm::vec3& normal, float rays,
+                                       float deviationMost, float known_lx, std::uint64_t key) const;
 
  private:
   struct Shiner {
@@ -45,6 +52,7 @@ class DirectField {
     std::uint32_t rays = 0;
     Columns<K> sum;
     float weights = 0.0F, strengths = 0.0F, squares = 0.0F;
+    float most = 0.0F;  ///< that a single ray added to `strengths`
   };
   /// Rays to be cast to one kind of shiners.
   struct Probes {
@@ -58,6 +66,7 @@ class DirectField {
               const glm::vec3& normal, std::uint64_t key) const;
   [[nodiscard]] Columns<K> seenOfBrightPart(const Shiner& shiner, const RayScene::Segment& ray) const;
   [[nodiscard]] DirectLight<K> lightOf(const Part& part) const;
+  [[nodiscard]] float grainOf(const Part& part) const;
 
   const SolvedLight<K>& light_;
   const World& world_;

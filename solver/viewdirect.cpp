@@ -14,13 +14,14 @@
 namespace clerestory {
 namespace {
 
-constexpr int directStride = 4;          // tiles between points that are measured anyway
-constexpr std::size_t directsLeast = 3;  // measured around a point, to judge by
-constexpr float furtherDirect = 8.0F;    // times as many rays where there is much noise
-constexpr float raysOfSure = 2.0F;       // times as many as were asked for: no more were needed
-constexpr float unevenMost = 0.02F;      // of all light, between points that another lies between
-constexpr float noiseMost = 3.0F;        // deviations that light may be off without being an outlier
-constexpr int smoothingSteps = 5;        // each doubles the reach: 62 tiles after five
+constexpr int directStride = 4;           // tiles between points that are measured anyway
+constexpr std::size_t directsLeast = 3;   // measured around a point, to judge by
+constexpr float furtherDirect = 8.0F;     // times as many rays where there is much noise
+constexpr float raysOfSure = 2.0F;        // times as many as were asked for: no more were needed
+constexpr float unevenMost = 0.02F;       // of all light, between points that another lies between
+constexpr float noiseMost = 3.0F;         // deviations that light may be off without being an outlier
+constexpr float deviationOfGrain = 0.5F;  // of what one ray brings by chance: it meets the thing or not
+constexpr int smoothingSteps = 5;         // each doubles the reach: 62 tiles after five
 
 template <int K>
 class DirectGather {
@@ -100,6 +101,17 @@ class DirectGather {
     });
   }
 
+  /// Where a bright strip comes into view, it is chance whether one of a sample's rays meets it. A sample of
+  /// which none did knows nothing of that, and is told by those around it.
+  void addGrain() {
+    samples_.changeAll([&](ViewSample<K>& result, std::size_t tile, std::size_t s) {
+      float grain_lx = 0.0F;
+      samples_.onSurface(samples_.all[s], tile, 1, 1,
+                         [&](const ViewSample<K>& other) { grain_lx = std::max(grain_lx, other.grain_lx); });
+      result.deviation_lx = std::hypot(result.deviation_lx, deviationOfGrain * grain_lx);
+    });
+  }
+
   /// An à-trous filter along surfaces. Shadows keep their edges, where light changes by more than its noise.
   void smooth() {
     std::vector<Lit> lit(samples_.all.size());
@@ -134,13 +146,14 @@ class DirectGather {
 
   void measure(std::size_t s, float rays) {
     ViewSample<K>& own = samples_.all[s];
-    const DirectLight<K> direct =
+    const auto [direct, grain_lx] =
         fields_.at(own.domain)
             .light(own.point + rayOffset_m * own.normal, own.normal, rays, settings_.deviationMost,
                    layout_.strength(own.reflected_lx), mixKeys(0x71e, s));
     for (int c = 0; c < K; ++c)
       own.share[c] = own.unhidden_lx[c] > 0.0F ? direct.illuminance_lx[c] / own.unhidden_lx[c] : 0.0F;
     own.deviation_lx = direct.deviation_lx;
+    own.grain_lx = grain_lx;
     own.isMeasured = true;
     own.seemsSure = static_cast<float>(direct.rays) < raysOfSure * rays;
   }
@@ -253,6 +266,7 @@ void gatherDirect(const SolvedLight<K>& light, const DirectMeasure& measure, Vie
   gather.evenDeviations();
   gather.measureNoisyAgain();
   gather.takeOutliersIn();
+  gather.addGrain();
   gather.smooth();
 }
 

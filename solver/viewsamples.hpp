@@ -30,6 +30,7 @@ struct ViewSample {
   Columns<K> unhidden_lx;     ///< direct light were nothing in the way
   Columns<K> share;           ///< of it that arrives
   float deviation_lx = 0.0F;  ///< of direct light
+  float grain_lx = 0.0F;      ///< of that light, what a single ray brought that met the bright
   bool isMeasured = false;    ///< direct light, by rays of its own
   bool seemsSure = false;     ///< that light, after the first of them
 

@@ -220,5 +220,35 @@ TEST(View, ShowsTheSunsDisc) {
   EXPECT_NEAR(beam_lx, expected_lx, 0.03 * expected_lx);
 }
 
+// A screen before the window leaves a strip of sky, which comes into view at a line on the wall behind. All
+// is the same from left to right and from right to left, and so are the pixels: what differs is noise.
+TEST(View, LightBeginsAtACleanLine) {
+  Drawing drawing;
+  addRoomWithPane(drawing, {0, 0, 0}, {4, 6, 3}, {0.5, 1.0, 3.5, 2.5});
+  const std::uint32_t dark = addMaterial(drawing, {.name = "screen", .reflectance = glm::dvec3(0.02)});
+  drawing.face({{-20.0, -1.5, 1.1}, {24.0, -1.5, 1.1}, {24.0, -1.5, 6.0}, {-20.0, -1.5, 6.0}}, dark);
+  Study study;
+  study.groundReflectance = 0.05;
+  ViewSettings view;
+  view.eye_m = {2.0, 1.0, 0.8};
+  view.target_m = {2.0, 6.0, 0.8};
+  view.fieldOfView_deg = 20.0;
+  constexpr int width = 320;
+  constexpr int height = 180;
+  view.size_px = {width, height};
+  study.views = {view};
+  const Solution solution = solve(buildingOf(drawing.scene, study), study, {});
+  const std::vector<glm::vec3>& pixels = solution.views.at(0).pixels_cd_m2;
+  double squares = 0.0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width / 2; ++x) {
+      const auto left = static_cast<std::size_t>(y * width + x);
+      const auto right = static_cast<std::size_t>(y * width + width - 1 - x);
+      squares += std::pow(std::log(static_cast<double>(pixels[left].g / pixels[right].g)), 2);
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / (width / 2 * height)), 0.02);  // the step that an eye begins to see
+}
+
 }  // namespace
 }  // namespace clerestory
