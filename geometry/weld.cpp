@@ -88,12 +88,14 @@ void filterFaces(Soup& soup, Keep keep) {
     soup.material[kept] = soup.material[face];
     soup.object[kept] = soup.object[face];
     soup.displaced[kept] = soup.displaced[face];
+    soup.bothWays[kept] = soup.bothWays[face];
     ++kept;
   }
   soup.faces = std::move(faces);
   soup.material.resize(kept);
   soup.object.resize(kept);
   soup.displaced.resize(kept);
+  soup.bothWays.resize(kept);
 }
 
 /// Drops corners that repeat the one before, and spikes that go out and back on one edge.
@@ -266,6 +268,7 @@ Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts)
   counts.pointsWelded += used - result.points.size();
   result.faces = soup.faces;
   result.displaced.resize(soup.faces.size());
+  result.bothWays.resize(soup.faces.size(), false);
   for (std::size_t face = 0; face < soup.faces.size(); ++face) {
     result.displaced[face] = std::ranges::any_of(soup.faces[face], [&](std::uint32_t corner) {
       return glm::length(result.points[renumbered[corner]] - onTheGrid[corner]) > tolerances.collinear_m;
@@ -298,7 +301,7 @@ void dropDegenerateFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts
   findings.tell("G201", "faces without area were dropped; the longest is named");
 }
 
-std::vector<bool> findDuplicates(std::vector<Footprint> footprints, const NameRanks& ranks) {
+void markDuplicates(std::vector<Footprint>& footprints, const NameRanks& ranks) {
   Loop order(footprints.size());
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
@@ -310,40 +313,47 @@ std::vector<bool> findDuplicates(std::vector<Footprint> footprints, const NameRa
     if (a.front != b.front) return a.front;
     return i < j;
   });
-  std::vector<bool> result(footprints.size(), false);
-  for (std::size_t first = 0; first < order.size();) {
-    std::size_t end = first + 1;
-    while (end < order.size() && footprints[order[end]].corners == footprints[order[first]].corners) ++end;
-    for (std::size_t i = first; i < end; ++i) {
-      // A side that a dropped one has taken stays taken: what is drawn both ways has both.
-      for (std::size_t j = first; j < i && !result[order[i]]; ++j) {
-        const Footprint& earlier = footprints[order[j]];
-        const Footprint& later = footprints[order[i]];
-        const bool isSameMaterial = !result[order[j]] && earlier.material == later.material;
-        if (isSameMaterial || earlier.front == later.front) result[order[i]] = true;
+  for (std::size_t first = 0, end = 0; first < order.size(); first = end) {
+    Footprint* kept = nullptr;  // the last
+    bool isFrontTaken = false;
+    bool isBackTaken = false;
+    for (; end < order.size() && footprints[order[end]].corners == footprints[order[first]].corners; ++end) {
+      Footprint& footprint = footprints[order[end]];
+      const bool wantsFront = footprint.front || footprint.bothWays;
+      const bool wantsBack = !footprint.front || footprint.bothWays;
+      if (kept != nullptr && kept->material == footprint.material) {
+        footprint.isDrawnAlready = true;
+        kept->bothWays = kept->bothWays || footprint.bothWays || kept->front != footprint.front;
+      } else if ((isFrontTaken || !wantsFront) && (isBackTaken || !wantsBack)) {
+        footprint.isDrawnAlready = true;
+      } else {
+        footprint.front = wantsFront && !isFrontTaken;
+        kept = &footprint;
       }
+      // A side that a dropped one has taken stays taken: what is drawn both ways has both.
+      isFrontTaken = isFrontTaken || wantsFront;
+      isBackTaken = isBackTaken || wantsBack;
     }
-    first = end;
   }
-  return result;
 }
 
 void dropDuplicateFaces(Soup& soup, const NameRanks& ranks, CleanupCounts& counts, Findings& findings) {
   std::vector<Footprint> footprints;
   for (std::size_t face = 0; face < soup.faces.size(); ++face) {
-    Footprint footprint{Loop(soup.faces[face].begin(), soup.faces[face].end()), soup.material[face],
-                        soup.object[face],
-                        canonicalSign(glm::normalize(doubleAreaVector(soup.points, soup.faces[face]))) > 0.0};
+    Footprint footprint{
+        Loop(soup.faces[face].begin(), soup.faces[face].end()), soup.material[face], soup.object[face],
+        canonicalSign(glm::normalize(doubleAreaVector(soup.points, soup.faces[face]))) > 0.0, false};
     std::sort(footprint.corners.begin(), footprint.corners.end());
     footprints.push_back(std::move(footprint));
   }
-  const std::vector<bool> duplicate = findDuplicates(std::move(footprints), ranks);
+  markDuplicates(footprints, ranks);
   filterFaces(soup, [&](std::size_t face, Loop& corners) {
-    if (duplicate[face]) {
+    if (footprints[face].isDrawnAlready) {
       findings.note("G202", soup.points, corners, soup.object[face],
                     0.5 * glm::length(doubleAreaVector(soup.points, corners)));
     }
-    return !duplicate[face];
+    soup.bothWays[face] = footprints[face].bothWays;
+    return !footprints[face].isDrawnAlready;
   });
   counts.duplicateFaces += findings.count("G202");
   findings.tell("G202", "faces drawn twice were dropped; the largest is named");
@@ -357,6 +367,7 @@ void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& c
     result.material.push_back(soup.material[face]);
     result.object.push_back(soup.object[face]);
     result.displaced.push_back(soup.displaced[face]);
+    result.bothWays.push_back(soup.bothWays[face]);
   };
   for (std::size_t face = 0; face < soup.faces.size(); ++face) {
     const Loop loop(soup.faces[face].begin(), soup.faces[face].end());
@@ -379,6 +390,7 @@ void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& c
   soup.material = std::move(result.material);
   soup.object = std::move(result.object);
   soup.displaced = std::move(result.displaced);
+  soup.bothWays = std::move(result.bothWays);
   counts.nonPlanarFaces += findings.count("G203");
   const auto worst_mm = static_cast<long>(std::lround(worst_m * 1e3));
   findings.tell("G203", "non-planar faces were split into triangles; the worst leaves its plane by " +
