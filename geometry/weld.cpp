@@ -11,6 +11,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "dividing.hpp"
 #include "planframe.hpp"
 #include "triangulate.hpp"
 
@@ -224,6 +225,16 @@ std::vector<double> ranksOf(const Soup& soup, std::span<const glm::dvec3> places
   return ranks_m;
 }
 
+/// Where a place that divides an edge comes to lie, whose ends are kept at other places.
+glm::dvec3 following(std::uint32_t place, const EdgeEnds& ends, std::span<const glm::dvec3> places,
+                     std::span<const std::uint32_t> keptOf) {
+  const auto& [a, b] = ends;
+  if (keptOf[a] == a && keptOf[b] == b) return places[place];
+  const glm::dvec3 way = places[b] - places[a];
+  const double share = glm::dot(places[place] - places[a], way) / glm::dot(way, way);
+  return glm::mix(places[keptOf[a]], places[keptOf[b]], share);
+}
+
 }  // namespace
 
 Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts) {
@@ -243,20 +254,43 @@ Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts)
   NearPoints near(tolerances.weld_m);
   Loop keptOf(places.size());
   std::vector<bool> isKept(places.size(), false);
+  const auto divided = dividedEdges(soup, placeOf, places, tolerances);
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     const std::uint32_t place = order[i];
+    if (divided.contains(place)) continue;
     const std::uint32_t found = near.nearest(places[place]);
     keptOf[place] = found == NearPoints::none ? place : order[found];
     if (found != NearPoints::none) continue;
     isKept[place] = true;
     near.add(places[place], i);
   }
+  NearPoints same(tolerances.drawn_m);
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    if (isKept[order[i]]) same.add(places[order[i]], i);
+  }
+  std::vector<glm::dvec3> moved = places;
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    const std::uint32_t place = order[i];
+    const auto edge = divided.find(place);
+    if (edge == divided.end()) continue;
+    moved[place] = onGrid(following(place, edge->second, places, keptOf), tolerances.grid_m);
+    const std::uint32_t found = same.nearest(moved[place]);
+    keptOf[place] = found == NearPoints::none ? place : order[found];
+    if (found != NearPoints::none) continue;
+    isKept[place] = true;
+    same.add(moved[place], i);
+  }
+  Loop kept;
+  for (std::uint32_t place = 0; place < places.size(); ++place) {
+    if (isKept[place]) kept.push_back(place);
+  }
+  std::sort(kept.begin(), kept.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return lexicographicallyLess(moved[a], moved[b]); });
   Soup result;
   Loop numberOf(places.size());
-  for (std::uint32_t place = 0; place < places.size(); ++place) {
-    if (!isKept[place]) continue;
+  for (const std::uint32_t place : kept) {
     numberOf[place] = static_cast<std::uint32_t>(result.points.size());
-    result.points.push_back(places[place]);
+    result.points.push_back(moved[place]);
   }
   Loop renumbered(soup.points.size());
   std::size_t used = 0;

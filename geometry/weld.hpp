@@ -9,8 +9,9 @@
 namespace clerestory {
 
 /// Puts points on the grid and welds those nearer than the tolerance: each goes to the nearest of the points
-/// kept before it, those of large surfaces first: a thing on a wall gives way, however the model lies. The
-/// result's points are sorted, used, and free of duplicates.
+/// kept before it, those of large surfaces first: a thing on a wall gives way, however the model lies.
+/// Points that only divide an edge follow its ends: dividing faces changes nothing. The result's points are
+/// sorted, used, and free of duplicates.
 Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts);
 
 /// Drops repeated corners and faces without area; starts every face at its smallest corner.
