@@ -94,6 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Redrawn{"room-sh3d-Studio/Studio_shell.obj"},
                     Redrawn{"room-sh3d-Studio/Studio.obj", {1.2e-2, 3, 1e-2}},
                     Redrawn{"room-sh3d-2BedroomApartment/2BedroomApartment_shell.obj", {1e-6, 1, 1e-3}},
+                    Redrawn{"room-sh3d-2BedroomApartment/2BedroomApartment.obj", {1e-6, 1, 2e-2}},
                     Redrawn{"room-duplex-ifc/duplex_webifc.obj", {1e-6, 0, 3e-3}}),
     [](const auto& test) { return std::filesystem::path(test.param.file).stem().string(); });
 
