@@ -17,7 +17,7 @@ namespace clerestory {
 namespace {
 
 Soup collectFaces(const Scene& scene, const Tolerances& tolerances, CleanModel& model, Findings& findings) {
-  Soup soup{scene.points, scene.faces, scene.faceMaterial, scene.faceObject, {}};
+  Soup soup{scene.points, scene.faces, scene.faceMaterial, scene.faceObject, {}, {}};
   model.counts.pointsRead = scene.points.size();
   model.counts.facesRead = scene.faces.size();
   for (const Cage& cage : scene.cages) {
@@ -50,27 +50,31 @@ void notePolygon(const char* code, const Soup& soup, const PlanarPolygon& polygo
                 0.5 * glm::length(doubleAreaVector(soup.points, polygon.outer)));
 }
 
-/// Merged polygons whose outlines are drawn twice, though their faces differed.
+/// Merged polygons whose outlines are drawn twice, though their faces differed. One drawn both ways is wound
+/// to a side that is left to it.
 void dropDuplicatePolygons(const Soup& soup, const NameRanks& ranks, std::vector<PlanarPolygon>& polygons,
                            CleanModel& model, Findings& findings) {
   std::vector<Footprint> footprints;
+  const auto isFront = [&](const PlanarPolygon& polygon) {
+    return canonicalSign(glm::normalize(doubleAreaVector(soup.points, polygon.outer))) > 0.0;
+  };
   for (const PlanarPolygon& polygon : polygons) {
-    Footprint footprint{polygon.outer, polygon.material, polygon.object,
-                        canonicalSign(glm::normalize(doubleAreaVector(soup.points, polygon.outer))) > 0.0};
+    Footprint footprint{polygon.outer, polygon.material, polygon.object, isFront(polygon), polygon.bothWays};
     for (const Loop& hole : polygon.holes) {
       footprint.corners.insert(footprint.corners.end(), hole.begin(), hole.end());
     }
     std::sort(footprint.corners.begin(), footprint.corners.end());
     footprints.push_back(std::move(footprint));
   }
-  const std::vector<bool> duplicate = findDuplicates(std::move(footprints), ranks);
+  markDuplicates(footprints, ranks);
   std::vector<PlanarPolygon> kept;
   for (std::size_t i = 0; i < polygons.size(); ++i) {
-    if (!duplicate[i]) {
-      kept.push_back(std::move(polygons[i]));
-    } else {
+    if (footprints[i].isDrawnAlready) {
       notePolygon("G206", soup, polygons[i], findings);
+      continue;
     }
+    if (footprints[i].front != isFront(polygons[i])) reverse(polygons[i]);
+    kept.push_back(std::move(polygons[i]));
   }
   polygons = std::move(kept);
   model.counts.duplicateFaces += findings.count("G206");

@@ -94,18 +94,27 @@ Loop sharedCorners(const std::vector<Loop>& rings) {
 /// Winds each polygon as most of the area of the faces at its corners is drawn.
 void windAsDrawn(const Soup& soup, std::span<const Face> faces, const glm::dvec3& normal,
                  std::vector<PlanarPolygon>& polygons) {
-  std::unordered_map<std::uint32_t, double> drawnAlong_m2;  // by corner
+  constexpr double even = 1e-3;  // share of the area that tells one way from both
+  struct Votes {
+    double along_m2 = 0.0, all_m2 = 0.0;
+  };
+  std::unordered_map<std::uint32_t, Votes> votesAt;  // by corner
   for (const Face& face : faces) {
     for (const std::uint32_t corner : soup.faces[face.index]) {
-      drawnAlong_m2[corner] += face.area_m2 * (glm::dot(face.normal, normal) > 0.0 ? 1.0 : -1.0);
+      Votes& votes = votesAt[corner];
+      votes.all_m2 += face.area_m2;
+      if (soup.bothWays[face.index]) continue;
+      votes.along_m2 += face.area_m2 * (glm::dot(face.normal, normal) > 0.0 ? 1.0 : -1.0);
     }
   }
   for (PlanarPolygon& polygon : polygons) {
-    double vote_m2 = 0.0;
-    for (const std::uint32_t corner : polygon.outer) vote_m2 += drawnAlong_m2[corner];
-    if (vote_m2 >= 0.0) continue;
-    std::reverse(polygon.outer.begin(), polygon.outer.end());
-    for (Loop& hole : polygon.holes) std::reverse(hole.begin(), hole.end());
+    Votes sum;
+    for (const std::uint32_t corner : polygon.outer) {
+      sum.along_m2 += votesAt[corner].along_m2;
+      sum.all_m2 += votesAt[corner].all_m2;
+    }
+    polygon.bothWays = std::abs(sum.along_m2) <= even * sum.all_m2;
+    if (!polygon.bothWays && sum.along_m2 < 0.0) reverse(polygon);
   }
 }
 
@@ -149,6 +158,11 @@ void mergeFaces(Soup& soup, const Tolerances& tolerances, std::span<const Face> 
 }
 
 }  // namespace
+
+void reverse(PlanarPolygon& polygon) {
+  std::reverse(polygon.outer.begin(), polygon.outer.end());
+  for (Loop& hole : polygon.holes) std::reverse(hole.begin(), hole.end());
+}
 
 void dropCollinearCorners(std::span<const glm::dvec3> points, double tolerance_m, Loop& loop,
                           std::span<const std::uint32_t> needed) {

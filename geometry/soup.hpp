@@ -38,6 +38,7 @@ struct Soup {
   std::vector<std::uint32_t> material;  ///< #faces
   std::vector<std::uint32_t> object;    ///< #faces
   std::vector<bool> displaced;  ///< #faces: the weld has moved a corner, so the face may be warped a little
+  std::vector<bool> bothWays;   ///< #faces: drawn once each way, of which one is left
 };
 
 /// A maximal planar region: an outer ring, counterclockwise about its drawn normal, and holes, clockwise.
@@ -46,6 +47,7 @@ struct PlanarPolygon {
   std::vector<Loop> holes{};
   std::uint32_t material = 0;
   std::uint32_t object = 0;
+  bool bothWays = false;        ///< as much of it is wound one way as the other
   glm::dvec3 mergedAlong{0.0};  ///< unit normal of the plane in which the outline was found; either sign
 };
 

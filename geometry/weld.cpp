@@ -11,6 +11,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "dividing.hpp"
 #include "planframe.hpp"
 #include "triangulate.hpp"
 
@@ -88,12 +89,14 @@ void filterFaces(Soup& soup, Keep keep) {
     soup.material[kept] = soup.material[face];
     soup.object[kept] = soup.object[face];
     soup.displaced[kept] = soup.displaced[face];
+    soup.bothWays[kept] = soup.bothWays[face];
     ++kept;
   }
   soup.faces = std::move(faces);
   soup.material.resize(kept);
   soup.object.resize(kept);
   soup.displaced.resize(kept);
+  soup.bothWays.resize(kept);
 }
 
 /// Drops corners that repeat the one before, and spikes that go out and back on one edge.
@@ -222,6 +225,16 @@ std::vector<double> ranksOf(const Soup& soup, std::span<const glm::dvec3> places
   return ranks_m;
 }
 
+/// Where a place that divides an edge comes to lie, whose ends are kept at other places.
+glm::dvec3 following(std::uint32_t place, const EdgeEnds& ends, std::span<const glm::dvec3> places,
+                     std::span<const std::uint32_t> keptOf) {
+  const auto& [a, b] = ends;
+  if (keptOf[a] == a && keptOf[b] == b) return places[place];
+  const glm::dvec3 way = places[b] - places[a];
+  const double share = glm::dot(places[place] - places[a], way) / glm::dot(way, way);
+  return glm::mix(places[keptOf[a]], places[keptOf[b]], share);
+}
+
 }  // namespace
 
 Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts) {
@@ -241,20 +254,43 @@ Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts)
   NearPoints near(tolerances.weld_m);
   Loop keptOf(places.size());
   std::vector<bool> isKept(places.size(), false);
+  const auto divided = dividedEdges(soup, placeOf, places, tolerances);
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     const std::uint32_t place = order[i];
+    if (divided.contains(place)) continue;
     const std::uint32_t found = near.nearest(places[place]);
     keptOf[place] = found == NearPoints::none ? place : order[found];
     if (found != NearPoints::none) continue;
     isKept[place] = true;
     near.add(places[place], i);
   }
+  NearPoints same(tolerances.drawn_m);
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    if (isKept[order[i]]) same.add(places[order[i]], i);
+  }
+  std::vector<glm::dvec3> moved = places;
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    const std::uint32_t place = order[i];
+    const auto edge = divided.find(place);
+    if (edge == divided.end()) continue;
+    moved[place] = onGrid(following(place, edge->second, places, keptOf), tolerances.grid_m);
+    const std::uint32_t found = same.nearest(moved[place]);
+    keptOf[place] = found == NearPoints::none ? place : order[found];
+    if (found != NearPoints::none) continue;
+    isKept[place] = true;
+    same.add(moved[place], i);
+  }
+  Loop kept;
+  for (std::uint32_t place = 0; place < places.size(); ++place) {
+    if (isKept[place]) kept.push_back(place);
+  }
+  std::sort(kept.begin(), kept.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return lexicographicallyLess(moved[a], moved[b]); });
   Soup result;
   Loop numberOf(places.size());
-  for (std::uint32_t place = 0; place < places.size(); ++place) {
-    if (!isKept[place]) continue;
+  for (const std::uint32_t place : kept) {
     numberOf[place] = static_cast<std::uint32_t>(result.points.size());
-    result.points.push_back(places[place]);
+    result.points.push_back(moved[place]);
   }
   Loop renumbered(soup.points.size());
   std::size_t used = 0;
@@ -266,6 +302,7 @@ Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts)
   counts.pointsWelded += used - result.points.size();
   result.faces = soup.faces;
   result.displaced.resize(soup.faces.size());
+  result.bothWays.resize(soup.faces.size(), false);
   for (std::size_t face = 0; face < soup.faces.size(); ++face) {
     result.displaced[face] = std::ranges::any_of(soup.faces[face], [&](std::uint32_t corner) {
       return glm::length(result.points[renumbered[corner]] - onTheGrid[corner]) > tolerances.collinear_m;
@@ -298,7 +335,7 @@ void dropDegenerateFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts
   findings.tell("G201", "faces without area were dropped; the longest is named");
 }
 
-std::vector<bool> findDuplicates(std::vector<Footprint> footprints, const NameRanks& ranks) {
+void markDuplicates(std::vector<Footprint>& footprints, const NameRanks& ranks) {
   Loop order(footprints.size());
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
@@ -310,40 +347,47 @@ std::vector<bool> findDuplicates(std::vector<Footprint> footprints, const NameRa
     if (a.front != b.front) return a.front;
     return i < j;
   });
-  std::vector<bool> result(footprints.size(), false);
-  for (std::size_t first = 0; first < order.size();) {
-    std::size_t end = first + 1;
-    while (end < order.size() && footprints[order[end]].corners == footprints[order[first]].corners) ++end;
-    for (std::size_t i = first; i < end; ++i) {
-      // A side that a dropped one has taken stays taken: what is drawn both ways has both.
-      for (std::size_t j = first; j < i && !result[order[i]]; ++j) {
-        const Footprint& earlier = footprints[order[j]];
-        const Footprint& later = footprints[order[i]];
-        const bool isSameMaterial = !result[order[j]] && earlier.material == later.material;
-        if (isSameMaterial || earlier.front == later.front) result[order[i]] = true;
+  for (std::size_t first = 0, end = 0; first < order.size(); first = end) {
+    Footprint* kept = nullptr;  // the last
+    bool isFrontTaken = false;
+    bool isBackTaken = false;
+    for (; end < order.size() && footprints[order[end]].corners == footprints[order[first]].corners; ++end) {
+      Footprint& footprint = footprints[order[end]];
+      const bool wantsFront = footprint.front || footprint.bothWays;
+      const bool wantsBack = !footprint.front || footprint.bothWays;
+      if (kept != nullptr && kept->material == footprint.material) {
+        footprint.isDrawnAlready = true;
+        kept->bothWays = kept->bothWays || footprint.bothWays || kept->front != footprint.front;
+      } else if ((isFrontTaken || !wantsFront) && (isBackTaken || !wantsBack)) {
+        footprint.isDrawnAlready = true;
+      } else {
+        footprint.front = wantsFront && !isFrontTaken;
+        kept = &footprint;
       }
+      // A side that a dropped one has taken stays taken: what is drawn both ways has both.
+      isFrontTaken = isFrontTaken || wantsFront;
+      isBackTaken = isBackTaken || wantsBack;
     }
-    first = end;
   }
-  return result;
 }
 
 void dropDuplicateFaces(Soup& soup, const NameRanks& ranks, CleanupCounts& counts, Findings& findings) {
   std::vector<Footprint> footprints;
   for (std::size_t face = 0; face < soup.faces.size(); ++face) {
-    Footprint footprint{Loop(soup.faces[face].begin(), soup.faces[face].end()), soup.material[face],
-                        soup.object[face],
-                        canonicalSign(glm::normalize(doubleAreaVector(soup.points, soup.faces[face]))) > 0.0};
+    Footprint footprint{
+        Loop(soup.faces[face].begin(), soup.faces[face].end()), soup.material[face], soup.object[face],
+        canonicalSign(glm::normalize(doubleAreaVector(soup.points, soup.faces[face]))) > 0.0, false};
     std::sort(footprint.corners.begin(), footprint.corners.end());
     footprints.push_back(std::move(footprint));
   }
-  const std::vector<bool> duplicate = findDuplicates(std::move(footprints), ranks);
+  markDuplicates(footprints, ranks);
   filterFaces(soup, [&](std::size_t face, Loop& corners) {
-    if (duplicate[face]) {
+    if (footprints[face].isDrawnAlready) {
       findings.note("G202", soup.points, corners, soup.object[face],
                     0.5 * glm::length(doubleAreaVector(soup.points, corners)));
     }
-    return !duplicate[face];
+    soup.bothWays[face] = footprints[face].bothWays;
+    return !footprints[face].isDrawnAlready;
   });
   counts.duplicateFaces += findings.count("G202");
   findings.tell("G202", "faces drawn twice were dropped; the largest is named");
@@ -357,6 +401,7 @@ void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& c
     result.material.push_back(soup.material[face]);
     result.object.push_back(soup.object[face]);
     result.displaced.push_back(soup.displaced[face]);
+    result.bothWays.push_back(soup.bothWays[face]);
   };
   for (std::size_t face = 0; face < soup.faces.size(); ++face) {
     const Loop loop(soup.faces[face].begin(), soup.faces[face].end());
@@ -379,6 +424,7 @@ void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& c
   soup.material = std::move(result.material);
   soup.object = std::move(result.object);
   soup.displaced = std::move(result.displaced);
+  soup.bothWays = std::move(result.bothWays);
   counts.nonPlanarFaces += findings.count("G203");
   const auto worst_mm = static_cast<long>(std::lround(worst_m * 1e3));
   findings.tell("G203", "non-planar faces were split into triangles; the worst leaves its plane by " +

@@ -9,8 +9,9 @@
 namespace clerestory {
 
 /// Puts points on the grid and welds those nearer than the tolerance: each goes to the nearest of the points
-/// kept before it, those of large surfaces first: a thing on a wall gives way, however the model lies. The
-/// result's points are sorted, used, and free of duplicates.
+/// kept before it, those of large surfaces first: a thing on a wall gives way, however the model lies.
+/// Points that only divide an edge follow its ends: dividing faces changes nothing. The result's points are
+/// sorted, used, and free of duplicates.
 Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts);
 
 /// Drops repeated corners and faces without area; starts every face at its smallest corner.
@@ -20,12 +21,14 @@ void dropDegenerateFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts
 struct Footprint {
   Loop corners;  ///< sorted
   std::uint32_t material, object;
-  bool front;  ///< its normal has the canonical sign
+  bool front;     ///< its normal has the canonical sign
+  bool bothWays;  ///< drawn both ways: it takes both sides that are free, and is wound to one of them
+  bool isDrawnAlready = false;
 };
 
-/// Which of them are drawn already: the same corners in the same material, or wound the same way in another.
-/// The first by names is kept.
-std::vector<bool> findDuplicates(std::vector<Footprint> footprints, const NameRanks& ranks);
+/// Marks those that are drawn already: the same corners in the same material, or wound the same way in
+/// another. The first by names is kept; its winding and whether it is drawn both ways are set.
+void markDuplicates(std::vector<Footprint>& footprints, const NameRanks& ranks);
 
 /// Drops faces that are drawn twice.
 void dropDuplicateFaces(Soup& soup, const NameRanks& ranks, CleanupCounts& counts, Findings& findings);

@@ -79,6 +79,22 @@ TEST(Clean, SheetDrawnBothWaysHasBothSides) {
   }
 }
 
+// A corner of a larger surface near to it pulls at a corner, not at a point that only divides an edge: that
+// follows the ends of its edge.
+TEST(Clean, DividingAFaceChangesNothing) {
+  const auto cleaned = [](const std::vector<double>& heights) {
+    Drawing drawing;  // beside the wood's lower corner, and beside the middle of its edge
+    drawing.face({{-0.0004, 0, 0}, {-0.0004, 0, 1.5}, {-4, 0, 5}, {-4, 0, 0}});
+    for (std::size_t i = 1; i < heights.size(); ++i)
+      drawing.face(upright(0, heights[i - 1], 1, heights[i]), 2, 1);
+    return cleanScene(drawing.scene);
+  };
+  const CleanModel whole = cleaned({0.0, 3.0});
+  ASSERT_EQ(whole.pieces.size(), 2U);
+  for (const auto& heights : {std::vector{0.0, 1.5, 3.0}, std::vector{0.0, 0.7, 1.5, 1.9, 3.0}})
+    EXPECT_TRUE(samePieces(cleaned(heights), whole));
+}
+
 TEST(Clean, SplitsWarpedFaces) {
   Drawing drawing;
   drawing.face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.01}, {0, 1, 0}});

@@ -140,6 +140,26 @@ TEST(Merge, OverlappingFacesCountOnce) {
   EXPECT_EQ(countOf(single, "G204"), 1U);
 }
 
+// As one whose faces are the same from both sides: whichever way other materials are wound, those of later
+// names have no side left, and those of earlier names leave one.
+TEST(Merge, WallDrawnBothWaysHasTheSidesThatAreLeft) {
+  const auto wall = upright(0, 0, 3, 2);
+  const Outline behind(wall.rbegin(), wall.rend());
+  const auto cleaned = [&](const Outline& other, std::uint32_t material, std::uint32_t otherMaterial) {
+    Drawing drawing;
+    drawing.fan(wall, 0, material);
+    drawing.fan(behind, 0, material);
+    drawing.face(other, otherMaterial, 1);
+    return cleanScene(drawing.scene);
+  };
+  for (const Outline& other : {wall, behind}) {
+    EXPECT_EQ(cleaned(other, 0, 2).pieces.size(), 1U);
+    const CleanModel both = cleaned(other, 2, 0);
+    ASSERT_EQ(both.pieces.size(), 2U);
+    EXPECT_NEAR(glm::dot(both.pieces.normal[0], both.pieces.normal[1]), -1.0, 1e-12);
+  }
+}
+
 /// Five lines of one outline cross within a tenth of a millimetre: what lies between the crossings has no
 /// size.
 TEST(Merge, RingsWithoutSizeAreNoSurfaces) {

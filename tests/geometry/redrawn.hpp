@@ -177,10 +177,10 @@ inline std::vector<RoomFigures> roomsOf(const Building& building) {
 }
 
 /// How far a model may differ from itself where corners of two things lie within a millimetre of each other,
-/// and nothing but their places, or points that divide an edge, tells which gives way.
+/// and nothing but their places tells which gives way.
 struct Likeness {
   double floors = 1e-6;
-  std::size_t otherSurfaces = 1;  ///< that differ by more than 1e-6, up to 1e-3
+  std::size_t otherSurfaces = 0;  ///< that differ by more than 1e-6, up to 1e-3
   double volumes = 1e-6;          ///< more where furniture or a slope is sampled
 };
 
