@@ -52,12 +52,8 @@ void PolygonLight<K>::sampleTo(std::uint32_t count) {
     const Columns<K> light = luminance_(receiver_ + (height_m_ / approach) * direction);
     samples_.add(u, v, weight, light, layout_.strength(light));
   }
-}
-
-template <int K>
-DirectLight<K> PolygonLight<K>::light() const {
   const float scale = std::numbers::pi_v<float> * formFactor_;
-  return {scale * samples_.mean(), scale * std::sqrt(samples_.variance()), size()};
+  light_ = {scale * samples_.mean(), scale * std::sqrt(samples_.variance()), size()};
 }
 
 template <int K>

@@ -55,7 +55,7 @@ class PolygonLight {
   [[nodiscard]] std::uint32_t size() const { return samples_.size(); }
   /// Carries the samples on to `count` in all.
   void sampleTo(std::uint32_t count);
-  [[nodiscard]] DirectLight<K> light() const;
+  [[nodiscard]] const DirectLight<K>& light() const { return light_; }
 
  private:
   const ColumnLayout& layout_;
@@ -68,6 +68,7 @@ class PolygonLight {
   Luminance<K> luminance_;
   float exitance_lm_m2_;
   EvenSamples<K> samples_;
+  DirectLight<K> light_;  ///< of these
 };
 
 /// Portals of `domain` that shine on a point, unsampled.

@@ -122,12 +122,11 @@ class HemisphereLight {
       samples_.add(u, v, 1.0F, *seen, world.layout.strength(*seen));
       if (isOpen_ && !world.rays.nearest(point_, direction, RayScene::Barrier::opaqueAndGlass)) sky_ += *seen;
     }
+    seen_ = {std::numbers::pi_v<float> * samples_.mean(),
+             std::numbers::pi_v<float> * std::sqrt(samples_.variance()), size()};
   }
 
-  [[nodiscard]] DirectLight<K> light() const {
-    return {std::numbers::pi_v<float> * samples_.mean(),
-            std::numbers::pi_v<float> * std::sqrt(samples_.variance()), size()};
-  }
+  [[nodiscard]] const DirectLight<K>& light() const { return seen_; }
   /// The part of it that comes straight from the sky.
   [[nodiscard]] Columns<K> sky_lx() const {
     return counted_ > 0.0F ? (std::numbers::pi_v<float> / counted_) * sky_ : Columns<K>{};
@@ -140,6 +139,7 @@ class HemisphereLight {
   glm::vec3 point_, normal_;
   Sequence sequence_;
   EvenSamples<K> samples_;
+  DirectLight<K> seen_;  // by these
   Columns<K> sky_;
   float counted_ = 0.0F;
 };
