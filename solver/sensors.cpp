@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <numbers>
 
@@ -30,20 +29,6 @@ float doubtOf(const ColumnLayout& layout, const DirectLight<K>& own, float unhid
   const float missed_lx = missedBetween * std::max(layout.strength(own.illuminance_lx), unhidden_lx) /
                           static_cast<float>(std::max(own.rays, 1U));
   return std::hypot(own.deviation_lx, missed_lx);
-}
-
-/// The level that doubts have to be cut down to, for the root of the sum of their squares to be `allowed`;
-/// infinity where it is no more than that.
-float levelOf(std::vector<float> doubts, float allowed) {
-  std::sort(doubts.begin(), doubts.end());
-  float left = allowed * allowed;
-  for (std::size_t i = 0; i < doubts.size(); ++i) {
-    const float square = doubts[i] * doubts[i];
-    const float level = left / static_cast<float>(doubts.size() - i);
-    if (square > level) return std::sqrt(level);
-    left -= square;
-  }
-  return std::numeric_limits<float>::infinity();
 }
 
 }  // namespace
@@ -146,8 +131,7 @@ class HemisphereLight {
 
 }  // namespace
 
-// What is more in doubt than the level is sampled twice as often, until all doubt together is allowed. So a
-// pane behind a wall, which is in none, leaves its share of the error to others.
+// What contributes more than its share of the error allowed is sampled twice as often, until all is within.
 template <int K>
 Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::vec3& point,
                    const glm::vec3& normal, const GatherSettings& settings, std::uint64_t key,
@@ -166,26 +150,27 @@ Gathered<K> gather(const SolvedLight<K>& light, std::int32_t domain, const glm::
   hemisphere.sampleTo(settings.rays);
   DirectLight<K> evenly = hemisphere.light();
 
+  const float parts = static_cast<float>(polygons.size() + bright.size()) + 1.0F;
   for (int round = 0; round < roundsMost; ++round) {
     const float all_lx = known_lx + layout.strength(fromPolygons.illuminance_lx + fromLamps.illuminance_lx +
                                                     fromBright.illuminance_lx + evenly.illuminance_lx);
-    std::vector<float> doubts_lx{doubtOf(layout, evenly)};
-    for (const auto* all : {&polygons, &bright}) {
-      for (const PolygonLight<K>& polygon : *all)
-        doubts_lx.push_back(doubtOf(layout, polygon.light(), polygon.unhidden_lx()));
+    const float allowed_lx = settings.deviationMost * all_lx;
+    float doubt_lx = doubtOf(layout, evenly);
+    for (const auto* own : {&polygons, &bright}) {
+      for (const PolygonLight<K>& polygon : *own)
+        doubt_lx = std::hypot(doubt_lx, doubtOf(layout, polygon.light(), polygon.unhidden_lx()));
     }
-    const float level_lx = levelOf(doubts_lx, settings.deviationMost * all_lx);
-    if (level_lx == std::numeric_limits<float>::infinity()) break;
-    auto doubt_lx = doubts_lx.begin();
-    const auto carryOn = [&](auto& part) {
-      if (*doubt_lx++ > level_lx && part.size() < samplesMost) part.sampleTo(2 * part.size());
+    if (!(doubt_lx > allowed_lx)) break;
+    const auto carryOn = [&](auto& part, float unhidden_lx) {
+      const float own_lx = doubtOf(layout, part.light(), unhidden_lx);
+      if (own_lx * std::sqrt(parts) > allowed_lx && part.size() < samplesMost) part.sampleTo(2 * part.size());
       return part.light();
     };
-    evenly = carryOn(hemisphere);
     fromPolygons = {};
-    for (PolygonLight<K>& polygon : polygons) fromPolygons += carryOn(polygon);
+    for (PolygonLight<K>& polygon : polygons) fromPolygons += carryOn(polygon, polygon.unhidden_lx());
     fromBright = {};
-    for (PolygonLight<K>& polygon : bright) fromBright += carryOn(polygon);
+    for (PolygonLight<K>& polygon : bright) fromBright += carryOn(polygon, polygon.unhidden_lx());
+    evenly = carryOn(hemisphere, 0.0F);
   }
 
   Gathered<K> result;
