@@ -9,7 +9,7 @@
 #include <numbers>
 #include <set>
 
-#include "../scenes.hpp"
+#include "redrawn.hpp"
 
 namespace clerestory {
 namespace {
@@ -45,17 +45,6 @@ std::set<std::int32_t> domainsOf(const Building& building, const glm::dvec3& tow
 
 std::set<std::int32_t> upwardAt(const Building& building, double height_m) {
   return domainsOf(building, {0, 0, 1}, [&](const glm::dvec3& c) { return std::abs(c.z - height_m) < 1e-6; });
-}
-
-/// Every face looks the other way.
-Scene reversed(Scene scene) {
-  PolygonList faces;
-  for (std::size_t face = 0; face < scene.faces.size(); ++face) {
-    const auto corners = scene.faces[face];
-    faces.add(std::vector<std::uint32_t>(corners.rbegin(), corners.rend()));
-  }
-  scene.faces = std::move(faces);
-  return scene;
 }
 
 TEST(Domains, ClosedBoxIsOneDomainAndTheOutside) {
