@@ -15,7 +15,7 @@ namespace clerestory {
 
 template <int K>
 EnteringLight<K>::EnteringLight(const SolvedLight<K>& light, std::int32_t domain, const Hierarchy& tree,
-                                const TransportSettings& settings)
+                                const TransportSettings& settings, bool mirrorsPatches)
     : light_(light),
       world_(light.world()),
       tree_(tree),
@@ -23,6 +23,7 @@ EnteringLight<K>::EnteringLight(const SolvedLight<K>& light, std::int32_t domain
       domain_(domain),
       isOpen_(world_.building.domains[static_cast<std::size_t>(domain)].open) {
   if (!isOpen_) portals_ = portalsOf(light, domain, settings.portalFluxRays);
+  for (PortalSender<K>& portal : portals_) portal.mirrorsPatches = mirrorsPatches && world_.sun;
 }
 
 template <int K>

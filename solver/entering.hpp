@@ -15,8 +15,10 @@ namespace clerestory {
 template <int K>
 class EnteringLight {
  public:
+  /// `mirrorsPatches`: clear panes mirror the patches of sun in the room to their receivers, who then are not
+  /// to get it from the panes as from other surfaces.
   EnteringLight(const SolvedLight<K>& light, std::int32_t domain, const Hierarchy& tree,
-                const TransportSettings& settings);
+                const TransportSettings& settings, bool mirrorsPatches);
 
   /// Portals of the domain or the open sky, and luminaires.
   [[nodiscard]] std::vector<Sender> senders() const;

@@ -41,6 +41,34 @@ float exitanceTowards(const SolvedLight<K>& light, const PortalSender<K>& portal
   return std::max(std::numbers::pi_v<float> * sky, 0.5F * portal.exitance_lm_m2);
 }
 
+/// What a clear pane mirrors towards a point of the sun's first light on the domain: of the patches that the
+/// beam lights, and of what other panes show of sunlit ground. A patch on the floor before a pane lies at a
+/// grazing angle to it, and the ceiling sees it there a second time. [cd/m²]
+template <int K>
+Columns<K> mirroredSunlight(const SolvedLight<K>& light, const PortalSender<K>& portal,
+                            const glm::vec3& point, const glm::vec3& onPane) {
+  const World& world = light.world();
+  const std::uint32_t pane = world.building.portals[portal.portal].piece;
+  if (!portal.mirrorsPatches || !world.isMirror(pane)) return {};
+  const glm::vec3 direction = glm::normalize(onPane - point);
+  const glm::vec3 mirrored = glm::reflect(direction, portal.inward);
+  const glm::vec3 from = onPane + rayOffset_m * portal.inward;
+  const auto hit = world.rays.nearest(from, mirrored, RayScene::Barrier::opaqueAndGlass);
+  if (!hit) return {};
+  const glm::vec3 met = from + hit.distance_m * mirrored;
+  const float share = world.glassOf(pane).reflectance(std::abs(glm::dot(direction, portal.inward))) *
+                      world.innerTransmittance(point, onPane) * world.innerTransmittance(from, met);
+  if (world.materialOf(hit.piece).glazing) {
+    const Columns<K> shown = light.paneLuminance(hit.piece, met, mirrored);
+    return share * world.layout.template light<K>(
+                       world.layout.sunColumn(), world.layout.colourOf(shown, world.layout.sunColumn()));
+  }
+  const glm::vec3 normal = world.normalOf(hit.side());
+  const glm::dvec3 beam_lx(sunlightAt(world, met + rayOffset_m * normal, normal));
+  return std::numbers::inv_pi_v<float> * share *
+         world.layout.template light<K>(world.layout.sunColumn(), world.reflectanceOf(hit.piece) * beam_lx);
+}
+
 }  // namespace
 
 template <int K>
@@ -51,7 +79,7 @@ std::vector<PortalSender<K>> portalsOf(const SolvedLight<K>& light, std::int32_t
     const Portal& portal = world.building.portals[i];
     if (portal.inside != domain) continue;
     const bool isLitOutside =
-        world.layout.sky || std::any_of(world.lamps.begin(), world.lamps.end(),
+        world.layout.sky || world.layout.sun || std::any_of(world.lamps.begin(), world.lamps.end(),
                                         [&](const Lamp& lamp) { return lamp.domain() == portal.outside; });
     if (!isLitOutside) continue;
     PortalSender<K> sender{};
@@ -168,7 +196,8 @@ PortalLight<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalS
     ++result.rays;
     if (world.rays.occluded(point, onPane, RayScene::Barrier::opaque)) continue;
     result.visible += weight;
-    const Columns<K> luminance = light.behindPortal(own, point, onPane);
+    const Columns<K> luminance =
+        light.behindPortal(own, point, onPane) + mirroredSunlight(light, portal, point, onPane);
     sum += weight * luminance;
     squared += weight * weight * luminance;
   }
@@ -192,7 +221,8 @@ template <int K>
 std::array<Columns<K>, 6> clusterLightFromPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
                                                  const Hierarchy& tree, NodeIndex cluster,
                                                  std::uint64_t& rays) {
-  const Portal& own = light.world().building.portals[portal.portal];
+  const World& world = light.world();
+  const Portal& own = world.building.portals[portal.portal];
   const Spots& spots = tree.spots[cluster];
   Columns<K> seen;
   float count = 0.0F;
@@ -201,7 +231,9 @@ std::array<Columns<K>, 6> clusterLightFromPortal(const SolvedLight<K>& light, co
     const glm::vec3 way = onPane - spots[i];
     if (glm::dot(way, tree.spotNormal(cluster, i)) <= 0.0F || glm::dot(way, portal.inward) >= 0.0F) continue;
     count += 1.0F;
-    seen += light.throughPortal(own, spots[i] + rayOffset_m * tree.spotNormal(cluster, i), onPane);
+    const glm::vec3 spot = spots[i] + rayOffset_m * tree.spotNormal(cluster, i);
+    if (world.rays.occluded(spot, onPane, RayScene::Barrier::opaque)) continue;
+    seen += light.behindPortal(own, spot, onPane) + mirroredSunlight(light, portal, spot, onPane);
   }
   rays += static_cast<std::uint64_t>(count);
   std::array<Columns<K>, 6> six{};

@@ -21,7 +21,7 @@ struct PortalSender {
   Spots spots;
   Columns<K> flux_lm;         ///< that enters
   float exitance_lm_m2;       ///< mean over the portal, of the strongest kind of light
-  glm::vec3 middle_outdoors;  ///< a point just outside its centre
+  bool mirrorsPatches;        ///< whether it shows receivers the patches of sun in the room, too
 };
 
 /// The portals of a domain; the flux of each by `rays` directions.

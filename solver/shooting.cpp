@@ -97,8 +97,13 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
       if (!tree.isLeaf(node)) continue;
       const Columns<K>& next = transport.received()[node].irradiance_lx;
       sum[node] += next;
-      const bool isSent = step == 1 && solved.isMirror(node);
-      unshot[node] = isSent ? Columns<K>{} : solved.reflected(node, next);
+      unshot[node] = solved.reflected(node, next);
+      if (step > 1) continue;
+      const Columns<K> mirrored = unshot[node] - solved.sentOn(node, next);
+      unshot[node] = unshot[node] - mirrored;
+      // Its receivers' light is among what entered.
+      solved.balance.emitted_lm -=
+          static_cast<double>(tree.area_m2[node]) * luminanceOf(world.layout.totalColour(mirrored));
     }
     unshotPower_lm = transport.powerOf(unshot);
     const float after_lm = world.layout.strength(unshotPower_lm);

@@ -22,6 +22,15 @@ SolvedDomain<K>::SolvedDomain(const World& world, std::int32_t domainIn, Hierarc
       radiosity.emitters.push_back(static_cast<std::uint32_t>(radiosity.exitance_lm_m2.size() - 1));
     }
   }
+  mirrorsPatches_.resize(radiosity.tree.sides.size());
+  const bool isOpen = world.building.domains[static_cast<std::size_t>(domain)].open;
+  for (std::size_t i = 0; i < mirrorsPatches_.size() && world.sun && !isOpen; ++i) {
+    const std::uint32_t piece = radiosity.tree.sides[i].side / 2;
+    const bool isPortal = std::ranges::any_of(world.building.portals, [&](const Portal& portal) {
+      return portal.piece == piece && portal.inside == domain;
+    });
+    mirrorsPatches_[i] = world.isMirror(piece) && isPortal ? 1 : 0;
+  }
   balance.domain = domain;
 }
 
@@ -44,6 +53,15 @@ bool SolvedDomain<K>::isMirror(NodeIndex leaf) const {
   const Hierarchy& tree = radiosity.tree;
   return world_.building.domains[static_cast<std::size_t>(domain)].open &&
          world_.isMirror(tree.sides[tree.treeSide[leaf]].side / 2);
+}
+
+template <int K>
+Columns<K> SolvedDomain<K>::sentOn(NodeIndex leaf, const Columns<K>& irradiance_lx) const {
+  if (isMirror(leaf)) return {};
+  const Columns<K> all = reflected(leaf, irradiance_lx);
+  if (mirrorsPatches_[radiosity.tree.treeSide[leaf]] == 0) return all;
+  const int sun = world_.layout.sunColumn();
+  return all - world_.layout.template light<K>(sun, world_.layout.colourOf(all, sun));
 }
 
 template <int K>

@@ -42,6 +42,9 @@ struct SolvedDomain {
   /// Whether a leaf is a clear pane outdoors: what it mirrors of sky and sun has reached its receivers along
   /// the mirrored ray, and is not to be sent out evenly as well.
   [[nodiscard]] bool isMirror(NodeIndex leaf) const;
+  /// What a leaf sends of the first step's light in the next one. A clear pane has mirrored some to its
+  /// receivers already: outdoors all of it, in a room what came from the patches of sun.
+  [[nodiscard]] Columns<K> sentOn(NodeIndex leaf, const Columns<K>& irradiance_lx) const;
 
   void addStatistics(const Tally& tally, std::size_t cached, float unshotPower_lm, double seconds);
   /// Adds up what was absorbed and what left through glass.
@@ -49,6 +52,7 @@ struct SolvedDomain {
 
  private:
   const World& world_;
+  std::vector<std::uint8_t> mirrorsPatches_;  // #sides of the tree: panes that are portals of this room
 };
 
 /// Gives nodes made since the tree had `before` of them the values of their parents.

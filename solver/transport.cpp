@@ -20,7 +20,7 @@ Transport<K>::Transport(const SolvedLight<K>& light, std::int32_t domain, Radios
       cache_(cache),
       tree_(radiosity.tree),
       links_(links),
-      entering_(light, domain, tree_, settings_),
+      entering_(light, domain, tree_, settings_, links == Links::madeAnew),
       interactions_(world_, tree_, unshot_, settings_) {
   interactions_.linksDark = links == Links::stored;
   received_.resize(tree_.size());
