@@ -60,8 +60,8 @@ Columns<K> mirroredSunlight(const SolvedLight<K>& light, const PortalSender<K>& 
                       world.innerTransmittance(point, onPane) * world.innerTransmittance(from, met);
   if (world.materialOf(hit.piece).glazing) {
     const Columns<K> shown = light.paneLuminance(hit.piece, met, mirrored);
-    return share * world.layout.template light<K>(
-                       world.layout.sunColumn(), world.layout.colourOf(shown, world.layout.sunColumn()));
+    return share * world.layout.template light<K>(world.layout.sunColumn(),
+                                                  world.layout.colourOf(shown, world.layout.sunColumn()));
   }
   const glm::vec3 normal = world.normalOf(hit.side());
   const glm::dvec3 beam_lx(sunlightAt(world, met + rayOffset_m * normal, normal));
@@ -78,9 +78,9 @@ std::vector<PortalSender<K>> portalsOf(const SolvedLight<K>& light, std::int32_t
   for (std::uint32_t i = 0; i < world.building.portals.size(); ++i) {
     const Portal& portal = world.building.portals[i];
     if (portal.inside != domain) continue;
-    const bool isLitOutside =
-        world.layout.sky || world.layout.sun || std::any_of(world.lamps.begin(), world.lamps.end(),
-                                        [&](const Lamp& lamp) { return lamp.domain() == portal.outside; });
+    const bool isLitOutside = world.layout.sky || world.layout.sun ||
+                              std::any_of(world.lamps.begin(), world.lamps.end(),
+                                          [&](const Lamp& lamp) { return lamp.domain() == portal.outside; });
     if (!isLitOutside) continue;
     PortalSender<K> sender{};
     sender.portal = i;

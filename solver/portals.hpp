@@ -19,9 +19,9 @@ struct PortalSender {
   glm::vec3 inward, centre;
   float radius_m, area_m2;
   Spots spots;
-  Columns<K> flux_lm;         ///< that enters
-  float exitance_lm_m2;       ///< mean over the portal, of the strongest kind of light
-  bool mirrorsPatches;        ///< whether it shows receivers the patches of sun in the room, too
+  Columns<K> flux_lm;    ///< that enters
+  float exitance_lm_m2;  ///< mean over the portal, of the strongest kind of light
+  bool mirrorsPatches;   ///< whether it shows receivers the patches of sun in the room, too
 };
 
 /// The portals of a domain; the flux of each by `rays` directions.
@@ -52,7 +52,7 @@ struct PortalLight {
   std::uint64_t rays = 0;
 };
 
-/// Light of an element from a portal, by `samples` (>= 2) pairs of points at least. and at least two.
+/// Light of an element from a portal, by `samples` (>= 2) pairs of points.
 template <int K>
 PortalLight<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
                                       const Receiver& element, const PortalSight& sight, float samples);

@@ -47,6 +47,7 @@ struct Radiosity {
   Sunlight sunlight{};                         ///< the beam; empty without sun
   std::vector<BrightPart> brightParts{};       ///< elements that points look at apart; none is within another
   std::vector<std::uint8_t> isInBrightPart{};  ///< #nodes, or empty
+  double solverError = 0.0;                    ///< relative, of reflected light that is gathered from it
 
   /// Irradiance of a point of a leaf: of its plane if there is one, else its mean.
   [[nodiscard]] Columns<K> irradianceAt(NodeIndex leaf, const glm::vec3& point) const {

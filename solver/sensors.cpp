@@ -209,8 +209,7 @@ std::int32_t domainAt(const World& world, const glm::vec3& point) {
 }
 
 template <int K>
-GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const GatherSettings& settings,
-                     double solverError) {
+GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const GatherSettings& settings) {
   const World& world = light.world();
   GridValues values;
   values.sensors.resize(grid.points.size());
@@ -234,9 +233,9 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
     value.sun_lx = luminanceOf(layout.colourOf(all, layout.sunColumn()));
     value.electric_lx = luminanceOf(layout.colourOf(all, layout.electricColumn()));
     value.illuminance_lx = value.direct_lx + value.reflected_lx;
-    value.error_lx =
-        2.0 * static_cast<double>(std::hypot(arriving.directDeviation_lx, arriving.reflectedDeviation_lx)) +
-        solverError * value.reflected_lx;
+    const double sampling_lx =
+        2.0 * static_cast<double>(std::hypot(arriving.directDeviation_lx, arriving.reflectedDeviation_lx));
+    value.error_lx = std::hypot(sampling_lx, light.of(domain)->solverError * value.reflected_lx);
   });
   return values;
 }
@@ -246,7 +245,7 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
       const SolvedLight<K>&, std::int32_t, const glm::vec3&, const glm::vec3&, LightAsked, float*);       \
   template Gathered<K> gather<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&, const glm::vec3&, \
                                  const GatherSettings&, std::uint64_t, float);                            \
-  template GridValues senseGrid<K>(const SolvedLight<K>&, const SensorGrid&, const GatherSettings&, double);
+  template GridValues senseGrid<K>(const SolvedLight<K>&, const SensorGrid&, const GatherSettings&);
 CLERESTORY_STUDY_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

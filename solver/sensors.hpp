@@ -53,8 +53,7 @@ std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32
 
 /// Values of a grid's sensors.
 template <int K>
-GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const GatherSettings& settings,
-                     double solverError);
+GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const GatherSettings& settings);
 
 /// The domain of air that a point is in, by what is seen around it; -1 where nothing is.
 std::int32_t domainAt(const World& world, const glm::vec3& point);

@@ -29,7 +29,7 @@ struct Tuning {
   GatherSettings sensors;
   PictureSettings views;
   PlainSettings plain;
-  double solverError;  ///< relative, of reflected light that a sensor gathers
+  double solverError;  ///< relative, of reflected light that a sensor gathers in a domain of one room
 };
 
 Tuning tuningFor(double accuracy, const SolveOptions& options) {
@@ -41,7 +41,7 @@ Tuning tuningFor(double accuracy, const SolveOptions& options) {
   tuning.sensors.rays = static_cast<std::uint32_t>(std::clamp(128.0 * finer, 32.0, 4096.0));
   tuning.sensors.deviationMost = static_cast<float>(0.2 * accuracy);
   tuning.views = picturesFor(accuracy);
-  tuning.solverError = 0.01 + 0.5 * accuracy;
+  tuning.solverError = 0.0075 + 0.5 * accuracy;
   tuning.plain.elementSize_m = static_cast<float>(0.4 / std::sqrt(finer));
   tuning.plain.raysPerElement = static_cast<std::uint32_t>(std::max(128.0 * finer, 8.0));
   tuning.plain.direct = {static_cast<float>(15.0 * finer), static_cast<float>(2.0 * finer)};
@@ -104,17 +104,37 @@ SolvedDomain<K> plainDomain(const SolvedLight<K>& light, std::int32_t domain, Hi
   return solved;
 }
 
+/// Rooms of a domain but for those that importance leaves out, 1 at least. What one interaction may err by is
+/// a share of all light in the domain; of twelve rooms that is twelve times as much to each of them.
+double roomsAsked(const World& world, std::int32_t domain, const Hierarchy& tree) {
+  const auto rooms = std::ranges::count(world.building.rooms, domain, &Room::domain);
+  double area_m2 = 0.0;
+  double weight_m2 = 0.0;
+  double squares_m2 = 0.0;
+  for (const TreeSide& side : tree.sides) {
+    const auto own_m2 = static_cast<double>(tree.area_m2[side.root]);
+    const auto asked_m2 = static_cast<double>(tree.weight[side.root]);
+    area_m2 += own_m2;
+    weight_m2 += asked_m2;
+    squares_m2 += asked_m2 * asked_m2 / own_m2;
+  }
+  const double share = weight_m2 * weight_m2 / (area_m2 * squares_m2);
+  return std::max(share * static_cast<double>(rooms), 1.0);
+}
+
 /// The outside is always shot: the methods differ in what they do with the light that comes in.
 template <int K>
 SolvedDomain<K> solveDomain(const SolvedLight<K>& light, std::int32_t domain, Hierarchy tree,
-                            const SolveOptions& options, const Tuning& tuning) {
+                            const SolveOptions& options, const Tuning& tuning, double rooms) {
+  TransportSettings transport = tuning.transport;
+  if (!options.epsilon) transport.epsilon /= static_cast<float>(std::sqrt(rooms));
   const bool isOpen = light.world().building.domains[static_cast<std::size_t>(domain)].open;
   if (options.method == Method::gathering && !isOpen)
-    return gatheringHR(light, domain, std::move(tree), tuning.transport);
+    return gatheringHR(light, domain, std::move(tree), transport);
   if (options.method == Method::plain && !isOpen)
     return plainDomain(light, domain, std::move(tree), tuning.plain);
   LinkCache cache(options.linkCacheBytes);
-  return shootingHR(light, domain, std::move(tree), tuning.transport, cache);
+  return shootingHR(light, domain, std::move(tree), transport, cache);
 }
 
 template <int K>
@@ -133,7 +153,10 @@ void solveDomains(const World& world, const Study& study, const SolveOptions& op
     Hierarchy tree = air.open ? outsideTree(world, study, domain, sides)
                               : Hierarchy(world.pieces(), sides, world.rays.origin(),
                                           importanceOf(world, study, domain, sides));
-    SolvedDomain<K> solved = solveDomain(light, domain, std::move(tree), options, tuning);
+    const double rooms = roomsAsked(world, domain, tree);
+    SolvedDomain<K> solved = solveDomain(light, domain, std::move(tree), options, tuning, rooms);
+    // Half of the rooms' power is in the threshold; the rest, as errors add up, is left to be stated.
+    solved.radiosity.solverError = tuning.solverError * std::pow(rooms, 0.125);
     solution.iterations.insert(solution.iterations.end(), solved.statistics.begin(), solved.statistics.end());
     if (!air.open) solution.balances.push_back(solved.balance);
     for (Diagnosis& diagnosis : solved.diagnoses) addDiagnosis(solution.diagnoses, std::move(diagnosis));
@@ -158,9 +181,9 @@ Solution solveColumns(const World& world, const Study& study, const SolveOptions
   const std::vector<SensorGrid>& grids = world.building.grids;
   for (std::size_t i = 0; i < grids.size(); ++i) {
     report(options, "sensors", static_cast<double>(i) / static_cast<double>(grids.size()));
-    solution.grids.push_back(senseGrid(light, grids[i], tuning.sensors, tuning.solverError));
+    solution.grids.push_back(senseGrid(light, grids[i], tuning.sensors));
   }
-  solution.surfaces = measureSurfaces(light, tuning.solverError, solution.mesh);
+  solution.surfaces = measureSurfaces(light, solution.mesh);
   solution.rooms = measureRooms(world, study);
   if (options.pictures) {
     for (std::size_t i = 0; i < study.views.size(); ++i) {

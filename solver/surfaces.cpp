@@ -37,13 +37,13 @@ void drawElement(const ColumnLayout& layout, const Radiosity<K>& radiosity, Node
 /// A row while it is added up.
 struct Row : SurfaceValue {
   double weight = 0.0;  ///< in the oracle; outdoors, and where nothing matters more than the rest, the area
+  double solverError = 0.0;  ///< relative, of its domain
 };
 
 }  // namespace
 
 template <int K>
-std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double solverError,
-                                          ElementMesh& mesh) {
+std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, ElementMesh& mesh) {
   const World& world = light.world();
   const Building& building = world.building;
   std::map<std::pair<std::int32_t, std::uint32_t>, Row> rows;
@@ -72,6 +72,7 @@ std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double so
       if (row.elements == 0) {
         row.surface = world.pieces().surface[piece];
         row.room = room;
+        row.solverError = radiosity->solverError;
         row.illuminanceMin_lx = row.illuminanceMax_lx = illuminance_lx;
       }
       ++row.elements;
@@ -93,7 +94,8 @@ std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double so
     row.illuminanceMean_lx /= row.area_m2;
     row.exitanceMean_lm_m2 /= row.area_m2;
     // What weighs less than its area is solved as at an accuracy that is lower by the root of that.
-    row.error_lx = solverError * row.illuminanceMean_lx * std::sqrt(std::max(row.area_m2 / row.weight, 1.0));
+    row.error_lx =
+        row.solverError * row.illuminanceMean_lx * std::sqrt(std::max(row.area_m2 / row.weight, 1.0));
     result.push_back(row);
   }
   for (const SurfaceValue* row : rowOfElement) mesh.surfaceRow.push_back(place[row]);
@@ -101,7 +103,7 @@ std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double so
 }
 
 #define CLERESTORY_INSTANTIATE(K) \
-  template std::vector<SurfaceValue> measureSurfaces<K>(const SolvedLight<K>&, double, ElementMesh&);
+  template std::vector<SurfaceValue> measureSurfaces<K>(const SolvedLight<K>&, ElementMesh&);
 CLERESTORY_STUDY_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

@@ -9,9 +9,8 @@
 namespace clerestory {
 
 /// One row for each surface and room of all solved domains, in the order of rooms (outside last) and
-/// surfaces; `mesh` becomes the elements that the rows are made of. solverError: relative error of an
-/// element's illuminance, for error_lx.
+/// surfaces; `mesh` becomes the elements that the rows are made of.
 template <int K>
-std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, double solverError, ElementMesh& mesh);
+std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, ElementMesh& mesh);
 
 }  // namespace clerestory

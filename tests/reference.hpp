@@ -20,10 +20,11 @@ namespace clerestory {
 struct ReferencePoint {
   std::array<double, 3> place_m;
   double value;
+  double standardDeviation = 0.0;  ///< of the value, where the table has it
 };
 
-/// Rows of x, y, z and a value, parted by commas or blanks; rows that do not begin so (headers) are passed
-/// over.
+/// Rows of x, y, z, a value and perhaps its standard deviation, parted by commas or blanks; rows that do not
+/// begin so (headers) are passed over.
 inline std::vector<ReferencePoint> readReference(const std::filesystem::path& file) {
   std::vector<ReferencePoint> points;
   std::ifstream stream(file);
@@ -31,8 +32,9 @@ inline std::vector<ReferencePoint> readReference(const std::filesystem::path& fi
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream numbers(line);
     ReferencePoint point{};
-    if (numbers >> point.place_m[0] >> point.place_m[1] >> point.place_m[2] >> point.value)
-      points.push_back(point);
+    if (!(numbers >> point.place_m[0] >> point.place_m[1] >> point.place_m[2] >> point.value)) continue;
+    if (!(numbers >> point.standardDeviation)) point.standardDeviation = 0.0;
+    points.push_back(point);
   }
   EXPECT_FALSE(points.empty()) << file << " holds no reference values";
   return points;

@@ -135,7 +135,7 @@ Measured measure(const Stage<K>& stage, std::vector<Radiosity<K>> rooms) {
   SolvedLight<K> inside(stage.world());
   for (std::size_t i = 0; i < rooms.size(); ++i) inside.add(stage.domains[i], std::move(rooms[i]));
   ElementMesh mesh;
-  for (const SurfaceValue& row : measureSurfaces(inside, 0.0, mesh)) {
+  for (const SurfaceValue& row : measureSurfaces(inside, mesh)) {
     if (row.area_m2 <= smallestSurface_m2) continue;
     measured.surface.push_back(row.surface);
     measured.area_m2.push_back(row.area_m2);
