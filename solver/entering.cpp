@@ -22,8 +22,7 @@ EnteringLight<K>::EnteringLight(const SolvedLight<K>& light, std::int32_t domain
       skyRays_(settings.skyRays),
       domain_(domain),
       isOpen_(world_.building.domains[static_cast<std::size_t>(domain)].open) {
-  if (!isOpen_) portals_ = portalsOf(light, domain, settings.portalFluxRays);
-  for (PortalSender<K>& portal : portals_) portal.mirrorsPatches = mirrorsPatches && world_.sun;
+  if (!isOpen_) portals_ = portalsOf(light, domain, settings.portalFluxRays, mirrorsPatches);
 }
 
 template <int K>

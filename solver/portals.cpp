@@ -26,21 +26,6 @@ bool isNear(const PortalSender<K>& portal, const Receiver& element) {
          std::max(element.corners.size(), portal.polygon.size()) <= contourCornersMost;
 }
 
-/// Exitance that a portal shows towards a point, were nothing outdoors but sky and ground; not less than half
-/// of what it lets in on average, since facades outdoors may be brighter than the sky there.
-template <int K>
-float exitanceTowards(const SolvedLight<K>& light, const PortalSender<K>& portal, const glm::vec3& point) {
-  const World& world = light.world();
-  const glm::vec3 outward = glm::normalize(portal.centre - point);
-  const std::uint32_t piece = world.building.portals[portal.portal].piece;
-  if (world.materialOf(piece).diffusing) return portal.exitance_lm_m2;
-  const float transmittance = world.portalFactor(piece) *
-                              world.glassOf(piece).transmittance(std::abs(glm::dot(outward, portal.inward)));
-  const float sky = world.layout.strength(
-      transmittance * (world.layout.template property<K>(world.tintOf(piece)) * light.skyLuminance(outward)));
-  return std::max(std::numbers::pi_v<float> * sky, 0.5F * portal.exitance_lm_m2);
-}
-
 /// What a clear pane mirrors towards a point of the sun's first light on the domain: of the patches that the
 /// beam lights, and of what other panes show of sunlit ground. A patch on the floor before a pane lies at a
 /// grazing angle to it, and the ceiling sees it there a second time. [cd/m²]
@@ -49,7 +34,6 @@ Columns<K> mirroredSunlight(const SolvedLight<K>& light, const PortalSender<K>& 
                             const glm::vec3& point, const glm::vec3& onPane) {
   const World& world = light.world();
   const std::uint32_t pane = world.building.portals[portal.portal].piece;
-  if (!portal.mirrorsPatches || !world.isMirror(pane)) return {};
   const glm::vec3 direction = glm::normalize(onPane - point);
   const glm::vec3 mirrored = glm::reflect(direction, portal.inward);
   const glm::vec3 from = onPane + rayOffset_m * portal.inward;
@@ -69,10 +53,36 @@ Columns<K> mirroredSunlight(const SolvedLight<K>& light, const PortalSender<K>& 
          world.layout.template light<K>(world.layout.sunColumn(), world.reflectanceOf(hit.piece) * beam_lx);
 }
 
+/// What a portal shows towards a point that sees it: the outside, and mirrored patches. [cd/m²]
+template <int K>
+Columns<K> shownTo(const SolvedLight<K>& light, const PortalSender<K>& portal, const glm::vec3& point,
+                   const glm::vec3& onPane) {
+  Columns<K> luminance = light.behindPortal(light.world().building.portals[portal.portal], point, onPane);
+  if (portal.mirrored_lm_m2 > 0.0F) luminance += mirroredSunlight(light, portal, point, onPane);
+  return luminance;
+}
+
+/// Exitance that a portal shows towards a point, were nothing outdoors but sky and ground; not less than half
+/// of what it lets in on average, since facades outdoors may be brighter than the sky there. What it mirrors
+/// counts by its mean.
+template <int K>
+float exitanceTowards(const SolvedLight<K>& light, const PortalSender<K>& portal, const glm::vec3& point) {
+  const World& world = light.world();
+  const glm::vec3 outward = glm::normalize(portal.centre - point);
+  const std::uint32_t piece = world.building.portals[portal.portal].piece;
+  if (world.materialOf(piece).diffusing) return portal.exitance_lm_m2;
+  const float transmittance = world.portalFactor(piece) *
+                              world.glassOf(piece).transmittance(std::abs(glm::dot(outward, portal.inward)));
+  const float sky = world.layout.strength(
+      transmittance * (world.layout.template property<K>(world.tintOf(piece)) * light.skyLuminance(outward)));
+  return std::max(std::numbers::pi_v<float> * sky, 0.5F * portal.exitance_lm_m2) + portal.mirrored_lm_m2;
+}
+
 }  // namespace
 
 template <int K>
-std::vector<PortalSender<K>> portalsOf(const SolvedLight<K>& light, std::int32_t domain, std::uint32_t rays) {
+std::vector<PortalSender<K>> portalsOf(const SolvedLight<K>& light, std::int32_t domain, std::uint32_t rays,
+                                       bool mirrorsPatches) {
   const World& world = light.world();
   std::vector<PortalSender<K>> senders;
   for (std::uint32_t i = 0; i < world.building.portals.size(); ++i) {
@@ -94,14 +104,19 @@ std::vector<PortalSender<K>> portalsOf(const SolvedLight<K>& light, std::int32_t
     sender.spots = spotsOn(sender.polygon, mixKeys(0x90c7, portal.piece));
 
     const Sequence sequence(mixKeys(0xf10c, portal.piece));
+    const bool mirrors = mirrorsPatches && world.sun && world.isMirror(portal.piece);
     Columns<K> sum;
+    Columns<K> mirrored;
     for (std::uint32_t ray = 0; ray < rays; ++ray) {
       const glm::vec3 point = pointOnPolygon<glm::vec3>(sender.polygon, sequence(ray, 0), sequence(ray, 1));
       const glm::vec3 direction = cosineDirection(-sender.inward, sequence(ray, 2), sequence(ray, 3));
       sum += light.throughPortal(portal, point - 1e-3F * direction, point);
+      if (mirrors) mirrored += mirroredSunlight(light, sender, point - 1e-3F * direction, point);
     }
-    const Columns<K> exitance = (std::numbers::pi_v<float> / static_cast<float>(rays)) * sum;
-    sender.flux_lm = sender.area_m2 * exitance;
+    const float ofEach = std::numbers::pi_v<float> / static_cast<float>(rays);
+    const Columns<K> exitance = ofEach * sum;
+    sender.flux_lm = (ofEach * sender.area_m2) * (sum + mirrored);
+    sender.mirrored_lm_m2 = world.layout.strength(ofEach * mirrored);
     sender.exitance_lm_m2 = world.layout.strength(exitance);
     senders.push_back(sender);
   }
@@ -166,7 +181,6 @@ template <int K>
 PortalLight<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
                                       const Receiver& element, const PortalSight& sight, float samples) {
   const World& world = light.world();
-  const Portal& own = world.building.portals[portal.portal];
   const Sequence onPortal(mixKeys(element.key, portal.portal));
   const Sequence onElement(mixKeys(element.key, 0x9a3e + std::uint64_t{portal.portal}));
   const glm::vec3 lift = rayOffset_m * element.normal;
@@ -196,8 +210,7 @@ PortalLight<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalS
     ++result.rays;
     if (world.rays.occluded(point, onPane, RayScene::Barrier::opaque)) continue;
     result.visible += weight;
-    const Columns<K> luminance =
-        light.behindPortal(own, point, onPane) + mirroredSunlight(light, portal, point, onPane);
+    const Columns<K> luminance = shownTo(light, portal, point, onPane);
     sum += weight * luminance;
     squared += weight * weight * luminance;
   }
@@ -222,7 +235,6 @@ std::array<Columns<K>, 6> clusterLightFromPortal(const SolvedLight<K>& light, co
                                                  const Hierarchy& tree, NodeIndex cluster,
                                                  std::uint64_t& rays) {
   const World& world = light.world();
-  const Portal& own = world.building.portals[portal.portal];
   const Spots& spots = tree.spots[cluster];
   Columns<K> seen;
   float count = 0.0F;
@@ -232,8 +244,8 @@ std::array<Columns<K>, 6> clusterLightFromPortal(const SolvedLight<K>& light, co
     if (glm::dot(way, tree.spotNormal(cluster, i)) <= 0.0F || glm::dot(way, portal.inward) >= 0.0F) continue;
     count += 1.0F;
     const glm::vec3 spot = spots[i] + rayOffset_m * tree.spotNormal(cluster, i);
-    if (world.rays.occluded(spot, onPane, RayScene::Barrier::opaque)) continue;
-    seen += light.behindPortal(own, spot, onPane) + mirroredSunlight(light, portal, spot, onPane);
+    if (!world.rays.occluded(spot, onPane, RayScene::Barrier::opaque))
+      seen += shownTo(light, portal, spot, onPane);
   }
   rays += static_cast<std::uint64_t>(count);
   std::array<Columns<K>, 6> six{};
@@ -245,13 +257,14 @@ std::array<Columns<K>, 6> clusterLightFromPortal(const SolvedLight<K>& light, co
   return six;
 }
 
-#define CLERESTORY_INSTANTIATE(K)                                                                         \
-  template std::vector<PortalSender<K>> portalsOf<K>(const SolvedLight<K>&, std::int32_t, std::uint32_t); \
-  template PortalSight lookAtPortal<K>(const SolvedLight<K>&, const PortalSender<K>&, const Receiver&);   \
-  template float seenOfPortal<K>(const World&, const PortalSender<K>&, const Receiver&);                  \
-  template PortalLight<K> elementLightFromPortal<K>(const SolvedLight<K>&, const PortalSender<K>&,        \
-                                                    const Receiver&, const PortalSight&, float);          \
-  template std::array<Columns<K>, 6> clusterLightFromPortal<K>(                                           \
+#define CLERESTORY_INSTANTIATE(K)                                                                        \
+  template std::vector<PortalSender<K>> portalsOf<K>(const SolvedLight<K>&, std::int32_t, std::uint32_t, \
+                                                     bool);                                              \
+  template PortalSight lookAtPortal<K>(const SolvedLight<K>&, const PortalSender<K>&, const Receiver&);  \
+  template float seenOfPortal<K>(const World&, const PortalSender<K>&, const Receiver&);                 \
+  template PortalLight<K> elementLightFromPortal<K>(const SolvedLight<K>&, const PortalSender<K>&,       \
+                                                    const Receiver&, const PortalSight&, float);         \
+  template std::array<Columns<K>, 6> clusterLightFromPortal<K>(                                          \
       const SolvedLight<K>&, const PortalSender<K>&, const Hierarchy&, NodeIndex, std::uint64_t&);
 CLERESTORY_TRANSPORT_WIDTHS(CLERESTORY_INSTANTIATE)
 

@@ -21,12 +21,14 @@ struct PortalSender {
   Spots spots;
   Columns<K> flux_lm;    ///< that enters
   float exitance_lm_m2;  ///< mean over the portal, of the strongest kind of light
-  bool mirrorsPatches;   ///< whether it shows receivers the patches of sun in the room, too
+  float mirrored_lm_m2;  ///< mean exitance of patches of sun in the room that it mirrors; 0: of none
 };
 
-/// The portals of a domain; the flux of each by `rays` directions.
+/// The portals of a domain; the flux of each by `rays` directions. `mirrorsPatches`: clear panes show their
+/// receivers the patches of sun in the room mirrored, as a part of their flux.
 template <int K>
-std::vector<PortalSender<K>> portalsOf(const SolvedLight<K>& light, std::int32_t domain, std::uint32_t rays);
+std::vector<PortalSender<K>> portalsOf(const SolvedLight<K>& light, std::int32_t domain, std::uint32_t rays,
+                                       bool mirrorsPatches);
 
 /// What of a portal's light has to be known to judge an interaction with it.
 struct PortalSight {

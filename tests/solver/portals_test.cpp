@@ -28,7 +28,7 @@ struct PaneRoom {
         world(building, study),
         light(world) {
     for (const Portal& portal : building.portals) {
-      if (portals.empty()) portals = portalsOf(light, portal.inside, 1024);
+      if (portals.empty()) portals = portalsOf(light, portal.inside, 1024, false);
     }
   }
 };

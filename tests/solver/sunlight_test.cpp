@@ -2,6 +2,8 @@
 // Sunlight in a room: patches that end where they should, all of the beam's power, and reflections of it.
 #include <glm/trigonometric.hpp>
 
+#include <numbers>
+
 #include <solver/glass.hpp>
 
 #include "solved.hpp"
@@ -101,6 +103,66 @@ TEST(Sunlight, LightIsKept) {
   EXPECT_NEAR(balance.absorbed_lm + balance.escaped_lm, balance.emitted_lm, 1e-3 * balance.emitted_lm);
 }
 
+// The strip of ceiling above the window sees the patch on the floor twice: straight, and at grazing angles in
+// the pane. All but the floor is black, so a sum over both, the patch's image weighed by what glass reflects
+// at the angle, is all its light.
+TEST(Sunlight, PanesMirrorThePatch) {
+  constexpr double floorReflectance = 0.8;
+  constexpr double height_m = 3.0;
+  constexpr double stripDepth_m = 1.0;
+  Drawing drawing;
+  drawing.scene.materials[plaster].reflectance = glm::dvec3(0.0);
+  drawing.scene.materials[glass].transmittance = glm::dvec3(0.65);
+  const std::uint32_t pale =
+      addMaterial(drawing, {.name = "pale", .reflectance = glm::dvec3(floorReflectance)});
+  addBox(drawing, {0, 0, 0}, {4, 6, height_m}, plaster, 0, {0, 1, 2});
+  drawing.face(box({0, 0, 0}, {4, 6, height_m})[0], pale, addObject(drawing, "floor"));
+  drawing.face(box({0, 0, 0}, {4, stripDepth_m, height_m})[1], plaster, addObject(drawing, "strip"));
+  drawing.face(box({0, stripDepth_m, 0}, {4, 6, height_m})[1], plaster, addObject(drawing, "ceiling"));
+  const Hole hole{1, 0.8, 3, 2.2};
+  addWallWithHole(drawing, 0, 0, 4, height_m, 0, hole);
+  drawing.face(upright(hole.x0, hole.z0, hole.x1, hole.z1), glass);
+  Study study = sunnyStudy();
+  study.accuracy = 0.02;
+  const Solved room = solved(drawing.scene, study);
+
+  const Glass pane(0.65);
+  const double cosine = std::cos(glm::radians(altitude_deg));
+  const double patch_lm_m2 =
+      floorReflectance * beam_lx * std::sin(glm::radians(altitude_deg)) * pane.transmittance(cosine);
+  const double patchArea_m2 = 2.0 * 1.4;  // x from 1 to 3, y from 0.8 to 2.2
+  constexpr int steps = 24;
+  double straight_lx = 0.0;
+  double mirrored_lx = 0.0;
+  for (int i = 0; i < steps * steps * steps * steps; ++i) {
+    const auto part = [&](int divisor) { return ((i / divisor) % steps + 0.5) / steps; };
+    const double x = 4.0 * part(1);
+    const double y = stripDepth_m * part(steps);
+    const double patchX = 1.0 + 2.0 * part(steps * steps);
+    const double patchY = 0.8 + 1.4 * part(steps * steps * steps);
+    const auto kernel = [&](double dy) {
+      const double squared = (x - patchX) * (x - patchX) + dy * dy + height_m * height_m;
+      return height_m * height_m / (std::numbers::pi * squared * squared);
+    };
+    straight_lx += kernel(y - patchY);
+    const double share = y / (y + patchY);  // of the way from the strip to the image, where it meets the wall
+    const double paneX = x + share * (patchX - x);
+    const double paneZ = height_m * (1.0 - share);
+    if (paneX < hole.x0 || paneX > hole.x1 || paneZ < hole.z0 || paneZ > hole.z1) continue;
+    const double length_m = std::hypot(x - patchX, y + patchY, height_m);
+    mirrored_lx += kernel(y + patchY) * pane.reflectance((y + patchY) / length_m);
+  }
+  const double weight = patch_lm_m2 * patchArea_m2 / std::pow(steps, 4);
+  EXPECT_GT(mirrored_lx, 0.02 * straight_lx);
+  bool isFound = false;
+  for (const SurfaceValue& row : room.solution.surfaces) {
+    if (room.building.model.surfaces[row.surface].name != "strip" || row.room < 0) continue;
+    isFound = true;
+    EXPECT_NEAR(row.illuminanceMean_lx, weight * (straight_lx + mirrored_lx), 0.1 * weight * mirrored_lx);
+  }
+  EXPECT_TRUE(isFound);
+}
+
 // The ground's sunlight comes in through the opening: seen from the ceiling, the outside below the horizon is
 // a uniform lamp. Half the ground's reflectance is half the light.
 TEST(Sunlight, GroundReflectsIt) {
@@ -114,6 +176,13 @@ TEST(Sunlight, GroundReflectsIt) {
   const double half = sun_lx(0.2);
   EXPECT_GT(half, 10.0);
   EXPECT_NEAR(sun_lx(0.4), 2.0 * half, 1e-4 * half);
+}
+
+// What panes mirror of patches is their receivers' and is not sent by the panes as well.
+TEST(Sunlight, MirroredLightIsCountedOnce) {
+  const Solved room = solved(sunnyRoom(0.7, 0.65).scene, sunnyStudy());
+  const EnergyBalance balance = room.balanceOf(room.building.rooms.at(0).domain);
+  EXPECT_NEAR(balance.absorbed_lm + balance.escaped_lm, balance.emitted_lm, 1e-3 * balance.emitted_lm);
 }
 
 // North and the sun's azimuth turned against each other leave the sun where it was.
