@@ -11,6 +11,8 @@
 namespace clerestory {
 namespace {
 
+constexpr std::size_t packetWidth = 8;
+
 struct DeviceRelease {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
 };
@@ -79,6 +81,19 @@ RTCRay makeRay(const glm::vec3& from, const glm::vec3& direction, float near_m, 
   return ray;
 }
 
+void setRay(RTCRay8& rays, std::size_t i, const glm::vec3& from, const glm::vec3& direction, float near_m,
+            float far_m) {
+  rays.org_x[i] = from.x;
+  rays.org_y[i] = from.y;
+  rays.org_z[i] = from.z;
+  rays.dir_x[i] = direction.x;
+  rays.dir_y[i] = direction.y;
+  rays.dir_z[i] = direction.z;
+  rays.tnear[i] = near_m;
+  rays.tfar[i] = far_m;
+  rays.mask[i] = ~0U;
+}
+
 }  // namespace
 
 struct RayScene::Embree {
@@ -87,6 +102,9 @@ struct RayScene::Embree {
   glm::dvec3 origin{0.0};
   std::vector<glm::vec3> normal;  // #pieces
 
+  [[nodiscard]] Hit hitOf(std::uint32_t piece, float distance_m, const glm::vec3& direction) const {
+    return {piece, distance_m, glm::dot(normal[piece], direction) < 0.0F};
+  }
   [[nodiscard]] const TriangleScene& of(Barrier barrier) const {
     return barrier == Barrier::opaque ? opaque : barriers;
   }
@@ -148,12 +166,34 @@ RayScene::Hit RayScene::nearest(const glm::vec3& from, const glm::vec3& directio
   rtcInitIntersectContext(&context);
   rtcIntersect1(triangles.scene.get(), &context, &query);
 
-  Hit hit;
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
-  hit.piece = triangles.owner[query.hit.primID];
-  hit.distance_m = query.ray.tfar;
-  hit.front = glm::dot(embree_->normal[hit.piece], direction) < 0.0F;
-  return hit;
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  return embree_->hitOf(triangles.owner[query.hit.primID], query.ray.tfar, direction);
+}
+
+void RayScene::nearest(std::span<const Ray> rays, Barrier barrier, std::span<Hit> hits) const {
+  const TriangleScene& triangles = embree_->of(barrier);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  for (std::size_t first = 0; first < rays.size(); first += packetWidth) {
+    const std::size_t count = std::min(packetWidth, rays.size() - first);
+    alignas(32) RTCRayHit8 query{};
+    alignas(32) int valid[packetWidth] = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      const Ray& ray = rays[first + i];
+      valid[i] = -1;
+      setRay(query.ray, i, ray.from, ray.direction, 0.0F, std::numeric_limits<float>::infinity());
+      query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect8(valid, triangles.scene.get(), &context, &query);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool isMet = query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+      hits[first + i] = isMet ? embree_->hitOf(triangles.owner[query.hit.primID[i]], query.ray.tfar[i],
+                                               rays[first + i].direction)
+                              : Hit{};
+    }
+  }
 }
 
 bool RayScene::meetsAny(const glm::vec3& from, const glm::vec3& direction, Barrier barrier,
@@ -170,33 +210,24 @@ bool RayScene::occluded(const glm::vec3& from, const glm::vec3& to, Barrier barr
 
 void RayScene::occluded(std::span<const Segment> segments, Barrier barrier,
                         std::span<std::uint8_t> blocked) const {
-  constexpr std::size_t width = 8;
   const RTCScene scene = embree_->of(barrier).scene.get();
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  for (std::size_t first = 0; first < segments.size(); first += width) {
-    const std::size_t count = std::min(width, segments.size() - first);
+  for (std::size_t first = 0; first < segments.size(); first += packetWidth) {
+    const std::size_t count = std::min(packetWidth, segments.size() - first);
     if (count == 1) {
       blocked[first] = occluded(segments[first].from, segments[first].to, barrier) ? 1 : 0;
       return;
     }
     alignas(32) RTCRay8 rays{};
-    alignas(32) int valid[width] = {};
+    alignas(32) int valid[packetWidth] = {};
     for (std::size_t i = 0; i < count; ++i) {
       const glm::vec3 span = segments[first + i].to - segments[first + i].from;
       const float length_m = glm::length(span);
       blocked[first + i] = 0;
       if (length_m <= 2.0F * rayOffset_m) continue;
       valid[i] = -1;
-      rays.org_x[i] = segments[first + i].from.x;
-      rays.org_y[i] = segments[first + i].from.y;
-      rays.org_z[i] = segments[first + i].from.z;
-      rays.dir_x[i] = span.x / length_m;
-      rays.dir_y[i] = span.y / length_m;
-      rays.dir_z[i] = span.z / length_m;
-      rays.tnear[i] = rayOffset_m;
-      rays.tfar[i] = length_m - rayOffset_m;
-      rays.mask[i] = ~0U;
+      setRay(rays, i, segments[first + i].from, span / length_m, rayOffset_m, length_m - rayOffset_m);
     }
     rtcOccluded8(valid, scene, &context, &rays);
     for (std::size_t i = 0; i < count; ++i) {

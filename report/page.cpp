@@ -163,7 +163,9 @@ std::string summaryTable(const Page& page) {
   if (withFactor) columns.push_back({"Median DF", "%"});
   columns.push_back({"Error", "%"});
   if (anyVerdict) columns.push_back({"EN 17037", "", false});
-  std::string html = tableHtml("At a glance", columns, rows);
+  std::string html = tableHtml("At a glance", columns, rows) +
+                     "<p class=\"note\">Error: estimated; 95 of 100 sensors are off by less." +
+                     (withFactor ? " DF: daylight factor." : "") + "</p>\n";
   if (grids > mostRows) {
     html += "<p class=\"note\"><a href=\"#overview\">All " + std::to_string(grids) + " grids</a></p>\n";
   }

@@ -39,6 +39,7 @@ figcaption{margin-top:10px;max-width:52em}
 .views{margin-top:26px}
 .rest{margin-top:30px;display:grid;grid-template-columns:repeat(auto-fit,minmax(min(420px,100%),1fr));gap:24px}
 .rest figure{margin:0}
+@media (min-width:901px){.views .rest figure:only-child{max-width:calc((100% - 40px)*2/3)}}
 summary{cursor:pointer;font-size:.95rem}
 .falsecolours{margin-top:26px}
 dl.figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(190px,1fr));gap:26px 28px;margin:26px 0 34px}

@@ -21,7 +21,8 @@ Camera::Camera(const ViewSettings& view)
       up_(glm::cross(right_, forward_)),
       fieldOfView_rad_(static_cast<float>(view.fieldOfView_deg * std::numbers::pi / 180.0)),
       width_(view.size_px[0]),
-      height_(view.size_px[1]) {
+      height_(view.size_px[1]),
+      perPixel_(2.0F * std::tan(0.5F * fieldOfView_rad_) / static_cast<float>(height_)) {
   if (projection_ != Projection::panorama) return;
   up_ = glm::normalize(glm::vec3(view.up));
   forward_ = glm::cross(up_, right_);
@@ -44,13 +45,12 @@ std::optional<glm::vec3> Camera::direction(float x, float y) const {
     const float across = radius > 0.0F ? std::sin(angle) / radius : 0.0F;
     return std::cos(angle) * forward_ + across * (right * right_ + up * up_);
   }
-  const float scale = 2.0F * std::tan(0.5F * fieldOfView_rad_) * perHeight;
-  return glm::normalize(forward_ + scale * (right * right_ + up * up_));
+  return glm::normalize(forward_ + perPixel_ * (right * right_ + up * up_));
 }
 
 float Camera::pixelAngle() const {
   const float perHeight = 1.0F / static_cast<float>(height_);
-  return projection_ == Projection::perspective ? 2.0F * std::tan(0.5F * fieldOfView_rad_) * perHeight
+  return projection_ == Projection::perspective ? perPixel_
          : projection_ == Projection::fisheye   ? fieldOfView_rad_ * perHeight
                                                 : pi * perHeight;
 }

@@ -29,6 +29,7 @@ class Camera {
   glm::vec3 forward_, right_, up_;
   float fieldOfView_rad_;
   int width_, height_;
+  float perPixel_;  // of a perspective, in a picture plane at distance 1
 };
 
 }  // namespace clerestory

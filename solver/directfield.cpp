@@ -179,10 +179,16 @@ void DirectField<K>::sample(std::vector<Part>& parts, std::span<const std::uint3
   std::vector<std::uint8_t> blocked(std::max(toPortals.ray.size(), toEmitters.ray.size()));
   world_.rays.occluded(toPortals.ray, RayScene::Barrier::opaque,
                        std::span(blocked).first(toPortals.ray.size()));
+  std::vector<std::size_t> open;
+  std::vector<typename SolvedLight<K>::PanePoint> panes;
   for (std::size_t i = 0; i < toPortals.ray.size(); ++i) {
-    if (blocked[i] == 0)
-      add(toPortals, i, light_.behindPortal(*shinerOf(toPortals, i).portal, point, toPortals.ray[i].to));
+    if (blocked[i] != 0) continue;
+    open.push_back(i);
+    panes.push_back({shinerOf(toPortals, i).portal, toPortals.ray[i].to});
   }
+  std::vector<Columns<K>> seen(panes.size());
+  light_.behindPortals(point, panes, seen);
+  for (std::size_t j = 0; j < open.size(); ++j) add(toPortals, open[j], seen[j]);
   std::vector<float> visible(toEmitters.ray.size());
   world_.visibility(toEmitters.ray, std::span(blocked).first(toEmitters.ray.size()), visible);
   for (std::size_t i = 0; i < toEmitters.ray.size(); ++i) {

@@ -2,6 +2,9 @@
 // Casts rays of view.
 #include "looks.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include <geometry/parallel.hpp>
 
 namespace clerestory {
@@ -11,17 +14,40 @@ Looks<K>::Looks(const SolvedLight<K>& light, const ViewSettings& view)
     : light_(light), world_(light.world()), camera_(view), eye_(world_.local(view.eye_m)) {
   const auto width = static_cast<std::size_t>(camera_.width());
   middles_.resize(width * static_cast<std::size_t>(camera_.height()));
-  forEachIndex(middles_.size(), 256, [&](std::size_t pixel) {
-    middles_[pixel] =
-        through({static_cast<float>(pixel % width) + 0.5F, static_cast<float>(pixel / width) + 0.5F}).hit;
+  forEachIndex(static_cast<std::size_t>(camera_.height()), 1, [&](std::size_t y) {
+    const std::vector<Look> looks = row({0.5F, static_cast<float>(y) + 0.5F}, width);
+    for (std::size_t x = 0; x < width; ++x) middles_[y * width + x] = looks[x].hit;
   });
 }
 
 template <int K>
-Look Looks<K>::through(const glm::vec2& at) const {
-  const auto direction = camera_.direction(at.x, at.y);
-  if (!direction) return {at, {}, false, {}};
-  return {at, *direction, true, world_.rays.nearest(eye_, *direction, RayScene::Barrier::opaqueAndGlass)};
+std::vector<Look> Looks<K>::row(const glm::vec2& first, std::size_t count) const {
+  std::vector<glm::vec2> at(count, first);
+  for (std::size_t i = 0; i < count; ++i) at[i].x += static_cast<float>(i);
+  std::vector<Look> looks(count);
+  through(at, looks);
+  return looks;
+}
+
+template <int K>
+void Looks<K>::through(std::span<const glm::vec2> at, std::span<Look> looks) const {
+  constexpr std::size_t together = 64;
+  std::array<RayScene::Ray, together> rays;
+  std::array<RayScene::Hit, together> hits;
+  for (std::size_t first = 0; first < at.size(); first += together) {
+    const std::span<Look> some = looks.subspan(first, std::min(together, at.size() - first));
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const auto direction = camera_.direction(at[first + i].x, at[first + i].y);
+      some[i] = {at[first + i], direction.value_or(glm::vec3(0.0F)), direction.has_value(), {}};
+      if (direction) rays[count++] = {eye_, *direction};
+    }
+    world_.rays.nearest(std::span(rays).first(count), RayScene::Barrier::opaqueAndGlass, hits);
+    const RayScene::Hit* next = hits.data();
+    for (Look& look : some) {
+      if (look.isInPicture) look.hit = *next++;
+    }
+  }
 }
 
 template <int K>

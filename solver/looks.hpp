@@ -4,6 +4,7 @@
 
 #include <glm/vec2.hpp>
 
+#include <span>
 #include <vector>
 
 #include "camera.hpp"
@@ -28,7 +29,11 @@ class Looks {
   [[nodiscard]] const Camera& camera() const { return camera_; }
   [[nodiscard]] const glm::vec3& eye() const { return eye_; }  ///< in local coordinates
 
-  [[nodiscard]] Look through(const glm::vec2& at) const;
+  /// Through points of the picture, best in the order in which they lie beside each other. `looks` (#at)
+  /// receives them.
+  void through(std::span<const glm::vec2> at, std::span<Look> looks) const;
+  /// Through `count` points a pixel apart in a row from `first` on.
+  [[nodiscard]] std::vector<Look> row(const glm::vec2& first, std::size_t count) const;
   /// Through the middle of a pixel of the picture.
   [[nodiscard]] Look atMiddle(int x, int y) const;
   [[nodiscard]] glm::vec3 pointOf(const Look& look) const {

@@ -62,15 +62,16 @@ Columns<K> SolvedLight<K>::skyLuminance(const glm::vec3& direction) const {
 
 template <int K>
 Columns<K> SolvedLight<K>::outsideLuminance(const glm::vec3& from, const glm::vec3& direction) const {
-  return alongOutdoors(from + rayOffset_m * direction, direction, true);
+  const glm::vec3 start = from + rayOffset_m * direction;
+  return alongOutdoors(start, direction, outdoors(start, direction), true);
 }
 
 // A sill before a pane sees the pane at a grazing angle, and in it the sky: 13 % of its light.
 template <int K>
-Columns<K> SolvedLight<K>::alongOutdoors(glm::vec3 from, glm::vec3 direction, bool withSurfaces) const {
+Columns<K> SolvedLight<K>::alongOutdoors(glm::vec3 from, glm::vec3 direction, RayScene::Hit hit,
+                                         bool withSurfaces) const {
   float weight = 1.0F;
   for (int depth = 0; depth < mirrorDepth; ++depth) {
-    const auto hit = world_.rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
     const glm::vec3 point = from + (hit ? hit.distance_m : 1e4F) * direction;
     weight *= world_.innerTransmittance(from, point);
     if (!hit) return weight * skyLuminance(direction);
@@ -82,6 +83,7 @@ Columns<K> SolvedLight<K>::alongOutdoors(glm::vec3 from, glm::vec3 direction, bo
     weight *= world_.glassOf(hit.piece).reflectance(std::abs(glm::dot(direction, normal)));
     direction = glm::reflect(direction, normal);
     from = point + rayOffset_m * normal;
+    hit = outdoors(from, direction);
   }
   return {};
 }
@@ -101,12 +103,39 @@ Columns<K> SolvedLight<K>::behindPortal(const Portal& portal, const glm::vec3& r
 }
 
 template <int K>
+void SolvedLight<K>::behindPortals(const glm::vec3& receiver, std::span<const PanePoint> points,
+                                   std::span<Columns<K>> seen) const {
+  std::vector<RayScene::Ray> rays;
+  rays.reserve(points.size());
+  for (const PanePoint& point : points) {
+    const glm::vec3 direction = glm::normalize(point.place - receiver);
+    rays.push_back({point.place + rayOffset_m * direction, direction});
+  }
+  std::vector<RayScene::Hit> hits(rays.size());
+  world_.rays.nearest(rays, RayScene::Barrier::opaqueAndGlass, hits);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& [from, direction] = rays[i];
+    const std::uint32_t piece = points[i].portal->piece;
+    seen[i] = world_.innerTransmittance(receiver, points[i].place) *
+              (world_.materialOf(piece).diffusing
+                   ? diffused_cd_m2_[piece]
+                   : throughGlass(piece, direction, alongOutdoors(from, direction, hits[i], true)));
+  }
+}
+
+template <int K>
 Columns<K> SolvedLight<K>::paneLuminance(std::uint32_t piece, const glm::vec3& onPane,
                                          const glm::vec3& direction) const {
   if (world_.materialOf(piece).diffusing) return diffused_cd_m2_[piece];
+  return throughGlass(piece, direction, outsideLuminance(onPane, direction));
+}
+
+template <int K>
+Columns<K> SolvedLight<K>::throughGlass(std::uint32_t piece, const glm::vec3& direction,
+                                        const Columns<K>& outside_cd_m2) const {
   const float cosine = std::abs(glm::dot(direction, world_.normalOf(2 * piece)));
   return world_.portalFactor(piece) * world_.glassOf(piece).transmittance(cosine) *
-         (world_.layout.template property<K>(world_.tintOf(piece)) * outsideLuminance(onPane, direction));
+         (world_.layout.template property<K>(world_.tintOf(piece)) * outside_cd_m2);
 }
 
 // What passes is scattered evenly over directions and over the pane: a mean over both.

@@ -97,7 +97,7 @@ class SolvedLight {
 
   /// What a ray outdoors sees of sky and ground, straight or over panes that mirror it. [cd/m²]
   [[nodiscard]] Columns<K> skyAlong(const glm::vec3& from, const glm::vec3& direction) const {
-    return alongOutdoors(from, direction, false);
+    return alongOutdoors(from, direction, outdoors(from, direction), false);
   }
 
   /// Finds how brightly scattering panes shine inwards; to be called when the outside is solved.
@@ -109,7 +109,16 @@ class SolvedLight {
   /// Luminance that a portal's point shows towards `receiver`, after the pane's transmittance. [cd/m²]
   [[nodiscard]] Columns<K> behindPortal(const Portal& portal, const glm::vec3& receiver,
                                         const glm::vec3& onPane) const;
-  /// The same, and black where something stands between. [cd/m²]
+  /// A point of a portal.
+  struct PanePoint {
+    const Portal* portal;
+    glm::vec3 place;
+  };
+  /// The same for many points that one receiver looks at, by rays in packets. `seen` (#points) receives what
+  /// each shows.
+  void behindPortals(const glm::vec3& receiver, std::span<const PanePoint> points,
+                     std::span<Columns<K>> seen) const;
+  /// `behindPortal`, and black where something stands between. [cd/m²]
   [[nodiscard]] Columns<K> throughPortal(const Portal& portal, const glm::vec3& receiver,
                                          const glm::vec3& onPane) const;
 
@@ -119,7 +128,13 @@ class SolvedLight {
   const World& world() const { return world_; }
 
  private:
-  [[nodiscard]] Columns<K> alongOutdoors(glm::vec3 from, glm::vec3 direction, bool withSurfaces) const;
+  [[nodiscard]] RayScene::Hit outdoors(const glm::vec3& from, const glm::vec3& direction) const {
+    return world_.rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
+  }
+  [[nodiscard]] Columns<K> alongOutdoors(glm::vec3 from, glm::vec3 direction, RayScene::Hit hit,
+                                         bool withSurfaces) const;
+  [[nodiscard]] Columns<K> throughGlass(std::uint32_t piece, const glm::vec3& direction,
+                                        const Columns<K>& outside_cd_m2) const;
 
   const World& world_;
   std::vector<NodeIndex> rootOfSide_;

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <geometry/parallel.hpp>
@@ -25,17 +26,19 @@ namespace {
 // Where the rays of a pixel pass through it.
 constexpr std::array<glm::vec2, 4> spots = {
     {{0.375F, 0.125F}, {0.875F, 0.375F}, {0.125F, 0.625F}, {0.625F, 0.875F}}};
-constexpr std::size_t furtherSide = 4;                 // 16 further spots where the first differ
+// Where 16 more pass, if the first differ: a lattice that is sheared, so that no two share a row or a column.
+constexpr auto furtherSpots = [] {
+  constexpr std::size_t side = 4;
+  std::array<glm::vec2, side * side> places{};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto column = static_cast<float>(i % side);
+    const auto row = static_cast<float>(i / side);
+    places[i] = {(column + (row + 0.5F) / side) / side, (row + (column + 0.5F) / side) / side};
+  }
+  return places;
+}();
 constexpr float contrastLeast = 1.1F;                  // between the first, to look further
 const GatherSettings spotSettings{{96.0F, 2.0F}, 64};  // where no sample is near
-
-/// Spots in a lattice that is sheared, so that no two share a row or a column.
-glm::vec2 furtherSpot(std::size_t i) {
-  constexpr auto side = static_cast<float>(furtherSide);
-  const auto column = static_cast<float>(i % furtherSide);
-  const auto row = static_cast<float>(i / furtherSide);
-  return {(column + (row + 0.5F) / side) / side, (row + (column + 0.5F) / side) / side};
-}
 
 template <int K>
 class Picture {
@@ -104,10 +107,12 @@ class Picture {
   /// Rays through the corners of all pixels, each shared by four.
   void lookThroughCorners() {
     const std::size_t width = static_cast<std::size_t>(looks_.camera().width()) + 1;
-    corners_.resize(width * (static_cast<std::size_t>(looks_.camera().height()) + 1));
-    forEachIndex(corners_.size(), 256, [&](std::size_t i) {
-      const glm::vec2 at(static_cast<float>(i % width), static_cast<float>(i / width));
-      corners_[i] = cornerOf(looks_.through(at), mixKeys(0x71f, i));
+    const std::size_t height = static_cast<std::size_t>(looks_.camera().height()) + 1;
+    corners_.resize(width * height);
+    forEachIndex(height, 1, [&](std::size_t y) {
+      const std::vector<Look> looks = looks_.row({0.0F, static_cast<float>(y)}, width);
+      for (std::size_t i = y * width, x = 0; x < width; ++i, ++x)
+        corners_[i] = cornerOf(looks[x], mixKeys(0x71f, i));
     });
   }
 
@@ -127,8 +132,7 @@ class Picture {
     double darkest = std::numeric_limits<double>::infinity();
     double brightest = 0.0;
     std::vector<std::uint32_t> sides;
-    const auto add = [&](const glm::vec2& spot) {
-      const Look look = looks_.through(corner + spot);
+    const auto add = [&](const Look& look) {
       sides.push_back(sideOf(look));
       const Seen seen = seenAlong(look, mixKeys(key, looked++));
       sum += seen.luminance_cd_m2;
@@ -139,10 +143,16 @@ class Picture {
       lit_lx += seen.illuminance_lx;
       ++surfaces;
     };
-    for (const glm::vec2& spot : spots) add(spot);
-    if (brightest > contrastLeast * darkest || !showAllOfCorners(sides, pixel % width, pixel / width)) {
-      for (std::size_t i = 0; i < furtherSide * furtherSide; ++i) add(furtherSpot(i));
-    }
+    const auto addAt = [&](std::span<const glm::vec2> places) {
+      std::array<glm::vec2, furtherSpots.size()> at;
+      std::array<Look, furtherSpots.size()> looks;
+      for (std::size_t i = 0; i < places.size(); ++i) at[i] = corner + places[i];
+      looks_.through(std::span(at).first(places.size()), looks);
+      for (std::size_t i = 0; i < places.size(); ++i) add(looks[i]);
+    };
+    addAt(spots);
+    if (brightest > contrastLeast * darkest || !showAllOfCorners(sides, pixel % width, pixel / width))
+      addAt(furtherSpots);
     image.pixels_cd_m2[pixel] = glm::vec3(sum / static_cast<double>(looked));
     if (surfaces > 0) image.illuminance_lx[pixel] = static_cast<float>(lit_lx / surfaces);
   }

