@@ -291,8 +291,8 @@ def show_columns():
 
 
 def measure_importance(build, folder):
-    floor = folder / "floor.obj"  # of the floor of twelve offices, which is not in the repository
-    run([build / "bench_importance", "--folder", folder, *(["--floor", floor] if floor.exists() else [])])
+    floor = DOCS.parent / "tests" / "data" / "reference" / "floor" / "floor.obj"
+    run([build / "bench_importance", "--folder", folder, "--floor", floor])
     return ["importance.csv"]
 
 

@@ -11,6 +11,8 @@
 #include <geometry/sampling.hpp>
 #include <solver/formfactor.hpp>
 
+#include "hiding.hpp"
+
 namespace clerestory {
 namespace {
 
@@ -67,6 +69,7 @@ std::vector<PolygonLight<K>> portalsAt(const SolvedLight<K>& light, std::int32_t
     const glm::vec3 inward = world.normalOf(2 * portal.piece + (portal.frontIsInside ? 0U : 1U));
     const auto polygon = world.polygon(portal.piece);
     if (glm::dot(receiver - polygon[0], inward) <= 0.0F) continue;
+    if (isBehindOnePiece(world, receiver, polygon)) continue;
     // What a pane shows by the strips of sky between blades, which few samples may all have missed.
     const glm::vec3 outward = glm::normalize(polygon[0] - receiver);
     const float open_lm_m2 =

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <geometry/sampling.hpp>
 #include <solver/formfactor.hpp>
@@ -177,40 +178,69 @@ float seenOfPortal(const World& world, const PortalSender<K>& portal, const Rece
   return static_cast<float>(seen) / static_cast<float>(spotsOfNode);
 }
 
+namespace {
+
+/// Ways from points of an element to points on a pane, and what each counts.
+struct PaneSamples {
+  std::vector<RayScene::Segment> ways;
+  std::vector<float> weights;
+};
+
 template <int K>
-PortalLight<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
-                                      const Receiver& element, const PortalSight& sight, float samples) {
-  const World& world = light.world();
+PaneSamples samplesOf(const PortalSender<K>& portal, const Receiver& element, std::uint32_t count, bool near,
+                      const SphericalPolygon& fromMiddle) {
   const Sequence onPortal(mixKeys(element.key, portal.portal));
   const Sequence onElement(mixKeys(element.key, 0x9a3e + std::uint64_t{portal.portal}));
   const glm::vec3 lift = rayOffset_m * element.normal;
-  const SphericalPolygon fromMiddle(element.centre + lift, element.normal, portal.polygon);
-  // Near by, or where the middle sees nothing, each point of the element has a view of the pane of its own.
-  const bool near = isNear(portal, element) || fromMiddle.solidAngle_sr() <= 0.0;
-  const auto count = static_cast<std::uint32_t>(std::ceil(near ? std::max(samples, nearSamples) : samples));
-  PortalLight<K> result;
-  Columns<K> sum;
-  Columns<K> squared;
-  float weights = 0.0F;
-  float squares = 0.0F;
+  PaneSamples samples;
+  samples.ways.reserve(count);
+  samples.weights.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     const glm::vec3 point =
         pointOnPolygon<glm::vec3>(element.corners, onElement(i, 2), onElement(i, 3)) + lift;
     const glm::vec3 eye = near ? point : element.centre + lift;
-    const SphericalPolygon seen = near ? SphericalPolygon(point, element.normal, portal.polygon) : fromMiddle;
+    std::optional<SphericalPolygon> fromPoint;
+    if (near) fromPoint.emplace(point, element.normal, portal.polygon);
+    const SphericalPolygon& seen = near ? *fromPoint : fromMiddle;
     if (seen.solidAngle_sr() <= 0.0) continue;
     const glm::vec3 direction = seen.direction(onPortal(i, 0), onPortal(i, 1));
     const float approach = glm::dot(direction, portal.inward);
     const float cosine = glm::dot(direction, element.normal);
     if (approach >= 0.0F || cosine <= 0.0F) continue;
-    const glm::vec3 onPane = eye + (glm::dot(portal.centre - eye, portal.inward) / approach) * direction;
-    const float weight = static_cast<float>(seen.solidAngle_sr()) * cosine;
+    samples.ways.push_back(
+        {point, eye + (glm::dot(portal.centre - eye, portal.inward) / approach) * direction});
+    samples.weights.push_back(static_cast<float>(seen.solidAngle_sr()) * cosine);
+  }
+  return samples;
+}
+
+}  // namespace
+
+template <int K>
+PortalLight<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
+                                      const Receiver& element, const PortalSight& sight, float samples) {
+  const World& world = light.world();
+  const SphericalPolygon fromMiddle(element.centre + rayOffset_m * element.normal, element.normal,
+                                    portal.polygon);
+  // Near by, or where the middle sees nothing, each point of the element has a view of the pane of its own.
+  const bool near = isNear(portal, element) || fromMiddle.solidAngle_sr() <= 0.0;
+  const auto count = static_cast<std::uint32_t>(std::ceil(near ? std::max(samples, nearSamples) : samples));
+  const auto [ways, counts] = samplesOf(portal, element, count, near, fromMiddle);
+  std::vector<std::uint8_t> blocked(ways.size());
+  world.rays.occluded(ways, RayScene::Barrier::opaque, blocked);
+  PortalLight<K> result;
+  result.rays = ways.size();
+  Columns<K> sum;
+  Columns<K> squared;
+  float weights = 0.0F;
+  float squares = 0.0F;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    const float weight = counts[i];
     weights += weight;
     squares += weight * weight;
-    ++result.rays;
-    if (world.rays.occluded(point, onPane, RayScene::Barrier::opaque)) continue;
+    if (blocked[i] != 0) continue;
     result.visible += weight;
-    const Columns<K> luminance = shownTo(light, portal, point, onPane);
+    const Columns<K> luminance = shownTo(light, portal, ways[i].from, ways[i].to);
     sum += weight * luminance;
     squared += weight * weight * luminance;
   }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace clerestory {
 namespace {
@@ -14,13 +13,6 @@ namespace {
 using glm::dvec3;
 
 constexpr double leastSolidAngle_sr = 1e-9;  // below this rounding rules; nothing is lost with it
-
-/// Angle between the planes of (at, to) and (at, other), along the sphere.
-double angleAt(const dvec3& at, const dvec3& to, const dvec3& other) {
-  const dvec3 first = glm::cross(at, to);
-  const dvec3 second = glm::cross(at, other);
-  return std::atan2(glm::length(glm::cross(first, second)), glm::dot(first, second));
-}
 
 dvec3 squareTo(const dvec3& axis, const dvec3& vector) {
   const dvec3 rest = vector - glm::dot(vector, axis) * axis;
@@ -60,10 +52,16 @@ void SphericalPolygon::addTriangle(const dvec3& a, const dvec3& b, const dvec3& 
   triangle.b = b;
   triangle.towardsC = squareTo(a, c);
   triangle.cosineOfAB = glm::dot(a, b);
-  triangle.angleAtA = angleAt(a, b, c);
-  triangle.sineAtA = std::sin(triangle.angleAtA);
-  triangle.cosineAtA = std::cos(triangle.angleAtA);
-  triangle.solidAngle_sr = triangle.angleAtA + angleAt(b, c, a) + angleAt(c, a, b) - std::numbers::pi;
+  const dvec3 planeOfB = glm::cross(a, b);
+  const dvec3 planeOfC = glm::cross(a, c);
+  const double sine = glm::length(glm::cross(planeOfB, planeOfC));
+  const double cosine = glm::dot(planeOfB, planeOfC);
+  const double scale = std::hypot(sine, cosine);
+  triangle.sineAtA = scale > 0.0 ? sine / scale : 0.0;
+  triangle.cosineAtA = scale > 0.0 ? cosine / scale : 1.0;
+  // A. van Oosterom, J. Strackee, The solid angle of a plane triangle, 1983.
+  triangle.solidAngle_sr = 2.0 * std::atan2(std::abs(glm::dot(planeOfB, c)),
+                                            1.0 + triangle.cosineOfAB + glm::dot(b, c) + glm::dot(c, a));
   if (!(triangle.solidAngle_sr > leastSolidAngle_sr)) return;
   solidAngle_sr_ += triangle.solidAngle_sr;
   fan_.push_back(triangle);
@@ -75,8 +73,10 @@ glm::vec3 SphericalPolygon::direction(float u, float v) const {
   while (i + 1 < fan_.size() && target >= fan_[i].solidAngle_sr) target -= fan_[i++].solidAngle_sr;
   const Triangle& own = fan_[i];
   const double area = std::min(target, own.solidAngle_sr);
-  const double s = std::sin(area - own.angleAtA);
-  const double t = std::cos(area - own.angleAtA);
+  const double sine = std::sin(area);
+  const double cosineOfArea = std::cos(area);
+  const double s = sine * own.cosineAtA - cosineOfArea * own.sineAtA;
+  const double t = cosineOfArea * own.cosineAtA + sine * own.sineAtA;
   const double p = t - own.cosineAtA;
   const double q = s + own.sineAtA * own.cosineOfAB;
   const double below = (q * s + p * t) * own.sineAtA;

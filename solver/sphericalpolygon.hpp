@@ -25,7 +25,7 @@ class SphericalPolygon {
   struct Triangle {
     glm::dvec3 a, b;
     glm::dvec3 towardsC;  ///< unit vector at a, square to a, in the plane of a and c
-    double cosineOfAB, angleAtA, sineAtA, cosineAtA;
+    double cosineOfAB, sineAtA, cosineAtA;
     double solidAngle_sr;
   };
   void addTriangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);

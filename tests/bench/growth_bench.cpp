@@ -9,6 +9,7 @@
 #include <solver/solution.hpp>
 
 #include "direct.hpp"
+#include "paths.hpp"
 #include "runs.hpp"
 
 namespace clerestory {
@@ -22,52 +23,17 @@ struct Options {
   std::uint32_t paths = 16384;  ///< of a sensor, twice
 };
 
-/// Light at a point by paths that end in light through the portals at each of their corners: no elements, no
-/// links. Glass reflects evenly, as in the solver. [lx]
-class Paths {
- public:
-  Paths(const SolvedLight<1>& outside, std::int32_t domain) : outside_(outside), domain_(domain) {}
-
-  [[nodiscard]] double illuminance(const glm::vec3& point, const glm::vec3& normal, std::uint32_t count,
-                                   std::uint64_t key) const {
-    double sum = 0.0;
-    for (std::uint32_t i = 0; i < count; ++i) sum += along(point, normal, i, key);
-    return entering(point, normal, {500.0F, 100.0F}, key) + sum / count;
+/// Illuminance of a point: direct light in many samples, and reflected light by paths. [lx]
+double illuminanceByPaths(const Paths<1>& paths, const LitRoom& room, const glm::vec3& point,
+                          const glm::vec3& normal, std::uint32_t count, std::uint64_t key) {
+  double sum_lx = 0.0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (const auto own = paths.along(point, normal, i, key)) sum_lx += static_cast<double>((*own)[0]);
   }
-
- private:
-  [[nodiscard]] double entering(const glm::vec3& point, const glm::vec3& normal, DirectSamples samples,
-                                std::uint64_t key) const {
-    const auto light = directFromPortals(outside_, domain_, point, normal, samples, key);
-    return static_cast<double>(light.illuminance_lx[0]);
-  }
-
-  /// Reflected light by one path, which goes on with the probability of the reflectance.
-  [[nodiscard]] double along(glm::vec3 point, glm::vec3 normal, std::uint32_t number,
-                             std::uint64_t key) const {
-    const World& world = outside_.world();
-    double sum = 0.0;
-    Sequence sequence(key);  // the first direction even over all paths, later ones by chance
-    std::uint32_t index = number;
-    for (std::uint32_t corner = 1; corner < 1000; ++corner) {
-      const glm::vec3 direction = cosineDirection(normal, sequence(index, 0), sequence(index, 1));
-      const auto hit = world.rays.nearest(point, direction, RayScene::Barrier::opaqueAndGlass);
-      if (!hit || world.building.sideDomain[hit.side()] != domain_) break;
-      normal = world.normalOf(hit.side());
-      point = point + hit.distance_m * direction + rayOffset_m * normal;
-      const std::uint64_t own = mixKeys(mixKeys(key, number), corner);
-      const double reflectance = luminanceOf(world.reflectanceOf(hit.piece));
-      sum += reflectance * entering(point, normal, {0.0F, 1.0F}, own);
-      sequence = Sequence(own);
-      index = 0;
-      if (static_cast<double>(sequence(0, 3)) >= reflectance) break;
-    }
-    return sum;
-  }
-
-  const SolvedLight<1>& outside_;
-  std::int32_t domain_;
-};
+  const DirectLight<1> direct =
+      directFromPortals(room.stage.outside, room.domain(), point, normal, {500.0F, 100.0F}, key);
+  return static_cast<double>(direct.illuminance_lx[0]) + sum_lx / count;
+}
 
 /// 95th percentile and RMS of (ours − true) / max(true, 5 % of the mean), and the truth's standard error. [%]
 struct SensorErrors {
@@ -76,13 +42,14 @@ struct SensorErrors {
 
 SensorErrors errorsOfSensors(const LitRoom& room, const GridValues& ours, const Options& options) {
   const SensorGrid& grid = room.building.grids[0];
-  const Paths paths(room.stage.outside, room.domain());
+  const Paths<1> paths(room.stage.outside, room.domain(), room.tree());
   std::vector<double> halves[2];
   for (std::size_t half = 0; half < 2; ++half) {
     halves[half].resize(grid.points.size());
     forEachIndex(grid.points.size(), 1, [&](std::size_t i) {
-      halves[half][i] = paths.illuminance(room.world.local(grid.points[i]), glm::vec3(grid.normals[i]),
-                                          options.paths, mixKeys(0x6a1 + half, i));
+      halves[half][i] =
+          illuminanceByPaths(paths, room, room.world.local(grid.points[i]), glm::vec3(grid.normals[i]),
+                             options.paths, mixKeys(0x6a1 + half, i));
     });
   }
   std::vector<double> truth, values;

@@ -6,17 +6,41 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <vector>
 
 #include <geometry/parallel.hpp>
 #include <geometry/sampling.hpp>
+#include <solver/formfactor.hpp>
 
-#include "direct.hpp"
 #include "shooting.hpp"
+#include "sphericalpolygon.hpp"
 #include "stage.hpp"
 
 namespace clerestory {
+
+/// Light at a point from a luminous polygon by one direction to it, whose luminance is asked for at the point
+/// where it meets the polygon. Drawn by its cosine, so the mean over keys is right: a ratio of means over a
+/// few samples of each polygon is some tenths of a per cent too bright or too dark. [lx]
+template <int K, class Luminance>
+Columns<K> byOneDirection(const glm::vec3& point, const glm::vec3& normal, std::span<const glm::vec3> polygon,
+                          std::uint64_t key, Luminance&& luminance) {
+  constexpr std::uint64_t drawsMost = 10000;
+  const SphericalPolygon seen(point, normal, polygon);
+  if (seen.solidAngle_sr() <= 0.0) return {};
+  const glm::vec3 across = glm::normalize(glm::cross(polygon[1] - polygon[0], polygon.back() - polygon[0]));
+  for (std::uint64_t draw = 0; draw < drawsMost; ++draw) {
+    const Sequence chance(mixKeys(key, draw));
+    const glm::vec3 direction = seen.direction(chance(0, 0), chance(0, 1));
+    if (chance(0, 2) >= glm::dot(direction, normal)) continue;
+    const float distance_m = glm::dot(polygon[0] - point, across) / glm::dot(direction, across);
+    if (!(distance_m > 0.0F)) return {};
+    const float perLuminance = std::numbers::pi_v<float> * pointToPolygon(point, normal, polygon);
+    return perLuminance * luminance(point + distance_m * direction);
+  }
+  return {};
+}
 
 /// Light at points of one domain by paths that end in light from portals and emitters at each of their
 /// corners. Glass reflects evenly, as in the solver. [lx]
@@ -24,20 +48,39 @@ template <int K>
 class Paths {
  public:
   Paths(const SolvedLight<K>& outside, std::int32_t domain, const Hierarchy& tree)
-      : outside_(outside), emitting_(outside.world()), domain_(domain) {
-    SolvedDomain<K> unlit(outside.world(), domain, Hierarchy(tree));
-    for (const Columns<K>& exitance : unlit.radiosity.exitance_lm_m2)
-      emits_ = emits_ || outside.world().layout.strength(exitance) > 0.0F;
-    if (emits_) emitting_.add(domain, std::move(unlit.radiosity));
+      : outside_(outside), domain_(domain) {
+    const World& world = outside.world();
+    for (const Portal& portal : world.building.portals) {
+      if (portal.inside == domain) portals_.push_back(portal);
+    }
+    for (const TreeSide& side : tree.sides) {
+      const Columns<K> exitance = world.layout.template light<K>(
+          world.layout.electricColumn(), world.materialOf(side.side / 2).exitance_lm_m2);
+      if (world.layout.strength(exitance) > 0.0F)
+        emitters_.push_back({side, std::numbers::inv_pi_v<float> * exitance});
+    }
   }
 
-  /// Light straight from portals and emitters.
-  [[nodiscard]] Columns<K> entering(const glm::vec3& point, const glm::vec3& normal, DirectSamples samples,
+  /// Light straight from portals and emitters by one ray to each, without bias.
+  [[nodiscard]] Columns<K> entering(const glm::vec3& point, const glm::vec3& normal,
                                     std::uint64_t key) const {
-    Columns<K> sum =
-        directFromPortals(outside_, domain_, point, normal, samples, mixKeys(key, 1)).illuminance_lx;
-    if (emits_)
-      sum += directFromEmitters(emitting_, domain_, point, normal, samples, mixKeys(key, 2)).illuminance_lx;
+    const World& world = outside_.world();
+    Columns<K> sum;
+    for (const Portal& portal : portals_) {
+      const glm::vec3 inward = world.normalOf(2 * portal.piece + (portal.frontIsInside ? 0U : 1U));
+      const auto polygon = world.polygon(portal.piece);
+      if (glm::dot(point - polygon[0], inward) <= 0.0F) continue;
+      sum += byOneDirection<K>(
+          point, normal, polygon, mixKeys(key, portal.piece),
+          [&](const glm::vec3& onPane) { return outside_.throughPortal(portal, point, onPane); });
+    }
+    for (const auto& [side, luminance] : emitters_) {
+      const auto polygon = world.polygon(side.side / 2);
+      if (glm::dot(point - polygon[0], side.normal) <= 0.0F) continue;
+      sum += byOneDirection<K>(point, normal, polygon, mixKeys(~key, side.side), [&](const glm::vec3& there) {
+        return world.visibility(point, there) * luminance;
+      });
+    }
     return sum;
   }
 
@@ -67,7 +110,7 @@ class Paths {
       normal = world.normalOf(hit.side());
       point = to + rayOffset_m * normal;
       weight *= layout.template property<K>(world.reflectanceOf(hit.piece));
-      sum += weight * entering(point, normal, {0.0F, 1.0F}, own);
+      sum += weight * entering(point, normal, own);
       sequence = Sequence(own);
       index = 0;
       const float goesOn = std::min(layout.strength(weight), 1.0F);
@@ -82,10 +125,15 @@ class Paths {
     return static_cast<bool>(hit) && outside_.world().building.sideDomain[hit.side()] == domain_;
   }
 
+  struct Emitter {
+    TreeSide side;
+    Columns<K> luminance_cd_m2;
+  };
+
   const SolvedLight<K>& outside_;
-  SolvedLight<K> emitting_;
   std::int32_t domain_;
-  bool emits_ = false;
+  std::vector<Portal> portals_;
+  std::vector<Emitter> emitters_;
 };
 
 /// The room that a domain is, or holds first; -1: none.
@@ -145,7 +193,7 @@ std::vector<PathSurface> surfacesByPaths(const Stage<K>& stage, std::size_t coun
       const auto reflected = rooms[d].along(point, side.normal, number, key);
       isShut[n] = reflected ? 0 : 1;
       if (!reflected) return;
-      const Columns<K> direct = rooms[d].entering(point, side.normal, {0.0F, 1.0F}, mixKeys(~key, n));
+      const Columns<K> direct = rooms[d].entering(point, side.normal, mixKeys(~key, n));
       light_lx[n] = luminanceOf(world.layout.totalColour(*reflected + direct));
     });
     for (std::size_t n = 0; n < paths; ++n) {

@@ -135,7 +135,8 @@ Truth makeTruth(const Stage<K>& stage, const std::string& scene, const std::file
   head << "# " << scene << ": " << stage.world().pieces().size() << " pieces; elements of "
        << settings.rival.elementSize_m << " m, " << settings.rival.raysPerElement << " rays, "
        << settings.rival.directPoints << " points; " << settings.gatherRays << " rays at "
-       << stage.places.size() << " places; " << settings.paths << " paths; " << settings.runs << " runs";
+       << stage.places.size() << " places; " << settings.paths << " paths, one ray to each pane; "
+       << settings.runs << " runs";
   const TruthFile file(folder / ("truth_" + scene + ".csv"), head.str());
   std::vector<Measured> runs;
   if (!file.read(runs)) {
