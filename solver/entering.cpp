@@ -86,7 +86,9 @@ Verdict EnteringLight<K>::receiveFromSky(const Receiver& receiver, Incoming<K>& 
 template <int K>
 Verdict EnteringLight<K>::receiveFromPortal(const Receiver& receiver, const PortalSender<K>& portal,
                                             const Limits& limits, Incoming<K>& incoming, Tally& tally) const {
-  constexpr float deviation = 0.35F;  // of what a pane shows over its area, as a share of the mean
+  // Of what a pane shows a receiver, as a share of the mean: that varies less than all that it lets in, but
+  // strips of sky between blades are as narrow from everywhere.
+  const float deviation = std::max(0.35F, 0.25F * portal.deviation);
   constexpr float fewest = 2.0F;
   constexpr float most = 64.0F;
   const PortalSight sight = lookAtPortal(light_, portal, receiver);

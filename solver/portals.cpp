@@ -102,21 +102,26 @@ std::vector<PortalSender<K>> portalsOf(const SolvedLight<K>& light, std::int32_t
       sender.centre += corner / static_cast<float>(sender.polygon.size());
     for (const glm::vec3& corner : sender.polygon)
       sender.radius_m = std::max(sender.radius_m, glm::length(corner - sender.centre));
-    sender.spots = spotsOn(sender.polygon, mixKeys(0x90c7, portal.piece));
 
     const Sequence sequence(mixKeys(0xf10c, portal.piece));
     const bool mirrors = mirrorsPatches && world.sun && world.isMirror(portal.piece);
     Columns<K> sum;
     Columns<K> mirrored;
+    double squares = 0.0;
     for (std::uint32_t ray = 0; ray < rays; ++ray) {
       const glm::vec3 point = pointOnPolygon<glm::vec3>(sender.polygon, sequence(ray, 0), sequence(ray, 1));
       const glm::vec3 direction = cosineDirection(-sender.inward, sequence(ray, 2), sequence(ray, 3));
-      sum += light.throughPortal(portal, point - 1e-3F * direction, point);
+      const Columns<K> shown = light.throughPortal(portal, point - 1e-3F * direction, point);
+      sum += shown;
+      squares += std::pow(static_cast<double>(world.layout.strength(shown)), 2.0);
       if (mirrors) mirrored += mirroredSunlight(light, sender, point - 1e-3F * direction, point);
     }
     const float ofEach = std::numbers::pi_v<float> / static_cast<float>(rays);
     const Columns<K> exitance = ofEach * sum;
     sender.flux_lm = (ofEach * sender.area_m2) * (sum + mirrored);
+    const double mean = static_cast<double>(world.layout.strength(sum)) / rays;
+    if (mean > 0.0)
+      sender.deviation = static_cast<float>(std::sqrt(std::max(squares / rays / (mean * mean) - 1.0, 0.0)));
     sender.mirrored_lm_m2 = world.layout.strength(ofEach * mirrored);
     sender.exitance_lm_m2 = world.layout.strength(exitance);
     senders.push_back(sender);
@@ -163,15 +168,25 @@ PortalSight lookAtPortal(const SolvedLight<K>& light, const PortalSender<K>& por
   return sight;
 }
 
+namespace {
+
+/// One of the points of a pane that a receiver looks at. Each receiver has its own: what eight points shared
+/// by all of them miss of a strip between blades would be missed everywhere.
+template <int K>
+glm::vec3 spotOnPane(const PortalSender<K>& portal, const Sequence& sequence, std::size_t i) {
+  const auto number = static_cast<std::uint32_t>(i);
+  return pointOnPolygon<glm::vec3>(portal.polygon, sequence(number, 0), sequence(number, 1));
+}
+
+}  // namespace
+
 template <int K>
 float seenOfPortal(const World& world, const PortalSender<K>& portal, const Receiver& receiver) {
   std::array<RayScene::Segment, spotsOfNode> segments;
   std::array<std::uint8_t, spotsOfNode> blocked;
-  const std::uint64_t turn = mixKeys(receiver.key, portal.portal);
-  for (std::size_t i = 0; i < spotsOfNode; ++i) {
-    segments[i] = {(*receiver.spots)[i],
-                   portal.spots[(i * (2 * (turn & 3U) + 1) + (turn >> 2U)) % spotsOfNode]};
-  }
+  const Sequence onPane(mixKeys(receiver.key, portal.portal));
+  for (std::size_t i = 0; i < spotsOfNode; ++i)
+    segments[i] = {(*receiver.spots)[i], spotOnPane(portal, onPane, i)};
   world.rays.occluded(segments, RayScene::Barrier::opaque, blocked);
   std::size_t seen = 0;
   for (const std::uint8_t isBlocked : blocked) seen += isBlocked == 0 ? 1U : 0U;
@@ -266,10 +281,11 @@ std::array<Columns<K>, 6> clusterLightFromPortal(const SolvedLight<K>& light, co
                                                  std::uint64_t& rays) {
   const World& world = light.world();
   const Spots& spots = tree.spots[cluster];
+  const Sequence sequence(mixKeys(tree.key[cluster], portal.portal));
   Columns<K> seen;
   float count = 0.0F;
   for (std::size_t i = 0; i < spotsOfNode; ++i) {
-    const glm::vec3& onPane = portal.spots[(i + tree.key[cluster]) % spotsOfNode];
+    const glm::vec3 onPane = spotOnPane(portal, sequence, i);
     const glm::vec3 way = onPane - spots[i];
     if (glm::dot(way, tree.spotNormal(cluster, i)) <= 0.0F || glm::dot(way, portal.inward) >= 0.0F) continue;
     count += 1.0F;

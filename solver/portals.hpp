@@ -18,9 +18,9 @@ struct PortalSender {
   std::span<const glm::vec3> polygon;
   glm::vec3 inward, centre;
   float radius_m, area_m2;
-  Spots spots;
   Columns<K> flux_lm;    ///< that enters
   float exitance_lm_m2;  ///< mean over the portal, of the strongest kind of light
+  float deviation;       ///< of what single directions show, as a share of their mean
   float mirrored_lm_m2;  ///< mean exitance of patches of sun in the room that it mirrors; 0: of none
 };
 
