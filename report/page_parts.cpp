@@ -4,6 +4,7 @@
 
 #include "colormap.hpp"
 #include "escape.hpp"
+#include "numbers.hpp"
 
 namespace clerestory {
 
@@ -32,12 +33,21 @@ std::string tableHtml(const std::string& caption, const std::vector<Column>& col
     }
     html += "</tr>\n";
   }
-  return html + "</tbody></table></div>\n";
+  html += "</tbody></table></div>\n";
+  if (rows.size() > mostRows) {
+    html += "<p class=\"note paper\">" + fixedNumber(static_cast<double>(mostRows), 0) + " of " +
+            fixedNumber(static_cast<double>(rows.size()), 0) + " rows; the CSV table has all.</p>\n";
+  }
+  return html;
 }
 
 std::string figureHtml(const std::string& label, const std::string& value, const std::string& unit) {
   return "<div><dt>" + label + "</dt><dd>" + value +
          (unit.empty() ? "" : " <span class=\"u\">" + unit + "</span>") + "</dd></div>\n";
+}
+
+std::string errorText(const GridMetrics& metrics) {
+  return "± " + fixedNumber(metrics.p95ErrorEstimate_pct, 1);
 }
 
 std::string sectionOpening(const std::string& id, const std::string& title, const std::string& style) {

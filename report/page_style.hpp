@@ -43,6 +43,7 @@ figcaption{margin-top:10px;max-width:52em}
 summary{cursor:pointer;font-size:.95rem}
 .falsecolours{margin-top:26px}
 dl.figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(190px,1fr));gap:26px 28px;margin:26px 0 34px}
+dl.figures div{display:flex;flex-direction:column;justify-content:flex-end}
 dl.figures dt{font-size:.84rem;color:var(--soft);line-height:1.35}
 dl.figures dd{margin:2px 0 0;font-size:1.6rem;font-weight:300;letter-spacing:-.01em;white-space:nowrap}
 dl.figures .u{font-size:.95rem;font-weight:400}
@@ -108,6 +109,7 @@ th[aria-sort=descending] .sort::after{content:" \2193"}
 .filter{display:block;margin:30px 0 -18px;font-size:.88rem;color:var(--soft)}
 .filter input{background:var(--tint);border:1px solid var(--line);border-radius:4px;padding:4px 8px;margin:0 8px;width:16em;
 max-width:60vw}
+.paper{display:none}
 .fold{margin-top:-14px;font-size:.88rem}
 table.folded:not(.filtered) tr.more{display:none}
 tr.chosen th,tr.chosen td,tr:target th,tr:target td{background:var(--tint)}
@@ -118,10 +120,13 @@ svg .off{display:none}
 .plan .isolux path{fill:none;stroke:#fff;stroke-width:1.3;pointer-events:none}
 .plan .isolux path.under{stroke:#1d1c1a;stroke-width:2.6;stroke-opacity:.55}
 .exposure{display:block;font-size:.88rem}
+.exposure input{margin-right:8px}
+.glance h2{font-weight:600;font-size:1.02rem;margin:0}
+.glance dl.figures{grid-template-columns:1fr 1fr;gap:20px 24px;margin:18px 0 26px}
+.glance p{margin:.9em 0 0}
 .glance table{font-size:.86rem}
 .glance tbody td:not(.n){min-width:0}
-.glance tbody th:not(.n){min-width:6.4em;padding-right:4px}
-.glance .yes{white-space:normal}
+.glance tbody th:not(.n){min-width:5em;padding-right:4px}
 .glance .n{padding-left:8px}
 .glance .n+td:not(.n),.glance .n+th:not(.n){padding-left:12px;padding-right:0}
 .exposed img{filter:url(#exposure)}
@@ -138,7 +143,7 @@ svg .off{display:none}
 .picked dt{font-size:.8rem;color:var(--soft)}
 .picked dd{margin:0;overflow-wrap:anywhere}
 .picked div{min-width:0}
-@media (max-width:900px){.first{grid-template-columns:minmax(0,1fr);gap:20px}}
+@media (max-width:900px){.first{grid-template-columns:minmax(0,1fr);gap:20px}.glance dl.figures{grid-template-columns:repeat(auto-fill,minmax(150px,1fr))}}
 @media (max-width:640px){main,header,footer{padding-left:20px;padding-right:20px}header{padding-top:40px}
 h1{font-size:2rem}section{margin:56px 0}}
 @page{margin:17mm 16mm 18mm;@bottom-right{content:counter(page) " / " counter(pages);font:8pt system-ui,"Liberation Sans",Arial,sans-serif;color:#55524d}}
@@ -147,16 +152,16 @@ h1{font-size:2rem}section{margin:56px 0}}
 *{-webkit-print-color-adjust:exact;print-color-adjust:exact}
 body{font-size:10pt}main,header,footer{max-width:none;padding:0}header{padding-top:0}nav{display:none}
 section{margin:12mm 0 0;padding-top:6mm}
-.room{break-before:page;margin-top:0;padding-top:0;border-top:0}
-h2,h3,caption{break-after:avoid}figure,dl.figures,tr,li,pre{break-inside:avoid}
+.room{break-before:page;margin-top:0;padding-top:0;border-top:0}.paper{display:block;margin:-3mm 0 5mm}.falsecolours+.room{break-before:auto;margin-top:12mm}.room>.lead{break-after:avoid}
+h2,h3,caption,thead{break-after:avoid}figure,dl.figures,tr,ul.list,pre{break-inside:avoid}tbody{break-before:avoid}
 thead{display:table-header-group;break-inside:avoid}tr.chosen th,tr.chosen td{background:none}.plan .sensors rect.chosen{stroke:none}.table{overflow:visible;margin:5mm 0}.short{break-inside:avoid}
-.filter,.fold,.switches,.readout,.exposure,.theme,.screen{display:none!important}
+footer,.filter,.fold,.switches,.readout,.exposure,.theme,.screen{display:none!important}
 .first{grid-template-columns:1fr;gap:4mm}.views{margin-top:5mm}.views img{max-height:150mm;width:auto;max-width:100%}
-.rest{display:block;margin-top:5mm}.rest figure{margin:5mm 0 0}.falsecolours summary{display:none}.falsecolours .rest{display:grid;grid-template-columns:1fr 1fr;gap:5mm}
-figure{margin:5mm 0}figcaption{margin-top:2mm;font-size:8.6pt}.chart{max-width:128mm}tr.more{display:none}th[aria-sort] .sort::after{content:""}button.sort{display:contents!important}
+.rest{display:block;margin-top:5mm}.rest figure{margin:5mm 0 0}.falsecolours,.falsecolours .rest figure{margin:0}.falsecolours summary{display:none}.falsecolours .rest{display:grid;grid-template-columns:1fr 1fr;gap:5mm}
+figure{margin:5mm 0}figcaption{margin-top:2mm;font-size:8.6pt;max-width:none}.chart{max-width:128mm}tr.more{display:none}th[aria-sort] .sort::after{content:""}button.sort{display:contents!important}
 table{font-size:8.6pt}th,td{padding:1.6mm 2mm 1.6mm 0}.n{padding-left:2mm;padding-right:0}
-.n+th:not(.n),.n+td:not(.n){padding-left:4mm}tbody th:not(.n),tbody td:not(.n){min-width:4.6em}tbody th:not(.n){min-width:8.8em}tbody tr:nth-child(-n+2){break-after:avoid}tbody tr:nth-last-child(-n+2){break-before:avoid}
-dl.figures{grid-template-columns:repeat(4,1fr);gap:3mm 6mm;margin:3mm 0}dl.figures dt{font-size:7.8pt}dl.figures dd{font-size:15pt}
+.n+th:not(.n),.n+td:not(.n){padding-left:4mm}tbody th:not(.n),tbody td:not(.n){min-width:4.6em}tbody th:not(.n){min-width:8.8em}tbody tr:nth-child(-n+2):not(:last-child){break-after:avoid}tbody tr:nth-last-child(-n+2):not(:first-child){break-before:avoid}
+dl.figures{grid-template-columns:repeat(4,1fr);gap:3mm 6mm;margin:3mm 0}dl.figures dt{font-size:7.8pt}dl.figures dd{font-size:15pt}.glance dl.figures{grid-template-columns:repeat(6,1fr);gap:3mm 4mm;margin:3mm 0}.glance p{margin:2mm 0 0;max-width:none}
 svg.plan{max-height:112mm}h3{margin:5mm 0 2mm}a{text-decoration:none}}
 )css";
 

@@ -181,10 +181,11 @@ std::string planSvg(const ReportInput& input, std::size_t g, const PlanScale& sc
   const double top = sheet.height + 18.0;
   const bool withFactors = hasDaylightFactor(input.study.sky) && isSkyOnly(input.solution.grids.at(g));
 
-  std::string svg =
-      "<svg class=\"plan\" role=\"img\" viewBox=\"0 0 " + shortNumber(sheet.width) + " " +
-      shortNumber(sheet.height + legendHeight_px) + "\" style=\"max-width:" + shortNumber(sheet.width) +
-      "px\" aria-label=\"Illuminance plan of " + escapeHtml(input.building.grids[g].name) + "\">\n";
+  std::string svg = "<svg class=\"plan\" role=\"img\" preserveAspectRatio=\"xMinYMin\" viewBox=\"0 0 " +
+                    shortNumber(sheet.width) + " " + shortNumber(sheet.height + legendHeight_px) +
+                    "\" style=\"max-width:" + shortNumber(sheet.width) +
+                    "px\" aria-label=\"Illuminance plan of " + escapeHtml(input.building.grids[g].name) +
+                    "\">\n";
   svg += floorSvg(sheet) + sensorsSvg(input, g, sheet, scale) + windowsSvg(sheet);
   svg += legendSvg(input, scale, 12.0, top, legendWidth, withFactors, g);
   svg += scaleBarSvg(sheet.width - 44.0, top + 10.0, sheet.scale);

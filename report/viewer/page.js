@@ -26,6 +26,7 @@
   const sortable = (table) => {
     const body = table.tBodies[0];
     const heads = [...table.tHead.rows[0].cells];
+    const rest = body.querySelectorAll("tr.more").length; // rows that stay folded, however they are sorted
     heads.forEach((head, column) => {
       if (!head.textContent.trim()) return;
       const button = make("button", { type: "button", class: "sort" });
@@ -39,6 +40,7 @@
         const compare = compareCells(column, isNumber);
         const rows = [...body.rows].sort((a, b) => (down ? compare(b, a) : compare(a, b)));
         body.append(...rows);
+        rows.forEach((row, i) => row.classList.toggle("more", i >= rows.length - rest));
         heads.forEach((other) => other.removeAttribute("aria-sort"));
         head.setAttribute("aria-sort", down ? "descending" : "ascending");
       });
