@@ -42,7 +42,7 @@ figcaption{margin-top:10px;max-width:52em}
 @media (min-width:901px){.views .rest figure:only-child{max-width:calc((100% - 40px)*2/3)}}
 summary{cursor:pointer;font-size:.95rem}
 .falsecolours{margin-top:26px}
-dl.figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(190px,1fr));gap:26px 28px;margin:26px 0 34px}
+dl.figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(190px,45%),1fr));gap:26px 28px;margin:26px 0 34px}
 dl.figures div{display:flex;flex-direction:column;justify-content:flex-end}
 dl.figures dt{font-size:.84rem;color:var(--soft);line-height:1.35}
 dl.figures dd{margin:2px 0 0;font-size:1.6rem;font-weight:300;letter-spacing:-.01em;white-space:nowrap}
@@ -131,8 +131,9 @@ svg .off{display:none}
 .glance .n+td:not(.n),.glance .n+th:not(.n){padding-left:12px;padding-right:0}
 .exposed img{filter:url(#exposure)}
 .controls{display:flex;flex-wrap:wrap;gap:10px 20px;align-items:center;font-size:.88rem;margin-bottom:12px}
+.controls input{width:100px}
 .controls output{display:inline-block;min-width:4.2em}
-.stage{height:min(64vh,600px);min-height:300px;background:var(--tint)}
+.stage{height:min(64vh,600px,100vw);min-height:300px;background:var(--tint)}
 .stage canvas{display:block;width:100%;height:100%;touch-action:none}
 .legend3d{margin:14px 0;max-width:420px;font-size:.82rem;color:var(--soft)}
 .legend3d .bar{height:10px}
@@ -145,7 +146,9 @@ svg .off{display:none}
 .picked div{min-width:0}
 @media (max-width:900px){.first{grid-template-columns:minmax(0,1fr);gap:20px}.glance dl.figures{grid-template-columns:repeat(auto-fill,minmax(150px,1fr))}}
 @media (max-width:640px){main,header,footer{padding-left:20px;padding-right:20px}header{padding-top:40px}
-h1{font-size:2rem}section{margin:56px 0}}
+h1{font-size:2rem}section{margin:56px 0}figure:has(>svg){overflow-x:auto}svg.plan,svg.chart{min-width:620px}
+caption{max-width:calc(100vw - 40px)}}
+@media (min-width:641px){.filter{position:relative;z-index:1;width:fit-content;margin:30px 0 -56px auto}}
 @page{margin:17mm 16mm 18mm;@bottom-right{content:counter(page) " / " counter(pages);font:8pt system-ui,"Liberation Sans",Arial,sans-serif;color:#55524d}}
 @media print{:root:root:root{color-scheme:light;--paper:#fff;--ink:#000;--soft:#55524d;--line:#d5d1ca;--tint:#f5f3ef;--accent:#8a4f0c;
 --wall:#8b867d;--floor:#eeebe4;--glass:#3f93c4;--yes:#1f6b3a;--no:#a3261b}

@@ -116,7 +116,9 @@
       chosen.classList.add("chosen");
       readout.textContent = rect.querySelector("title").textContent;
     };
-    svg.addEventListener("pointermove", (event) => choose(event.target.closest(".sensors rect")));
+    for (const type of ["pointermove", "pointerdown"]) {
+      svg.addEventListener(type, (event) => choose(event.target.closest(".sensors rect")));
+    }
     svg.addEventListener("keydown", (event) => {
       if (!event.key.startsWith("Arrow")) return;
       event.preventDefault();
