@@ -127,7 +127,7 @@ std::string roomChecksHtml(const ReportInput& input, std::size_t room) {
                         : verdictHtml(level != "none", level == "none" ? "not met" : "met, " + level)});
   }
   if (rows.empty()) return {};
-  return tableHtml("Checks", {{"Check", "", false}, {"Computed", "", false}, {"", "", false}}, rows);
+  return tableHtml("Checks", {{"Check", "", false}, {"Computed", "", false}, {"Verdict", "", false}}, rows);
 }
 
 namespace {

@@ -180,7 +180,7 @@ std::string norm(const Page& page, std::size_t g) {
                     {"Area with it", "%, 50 asked"},
                     {"Minimum DF", "%"},
                     {"Area with it", "%, 95 asked"},
-                    {"", "", false}},
+                    {"Verdict", "", false}},
                    rows);
 }
 

@@ -13,7 +13,7 @@ std::string tableHtml(const std::string& caption, const std::vector<Column>& col
                       std::size_t mostRows) {
   constexpr std::size_t mostUnbroken = 8;  // rows that paper keeps on one page
   std::string html = std::string("<div class=\"table") + (rows.size() <= mostUnbroken ? " short" : "") +
-                     "\" role=\"region\" tabindex=\"0\" aria-label=\"" + caption + "\"><table>\n<caption>" +
+                     "\" role=\"group\" tabindex=\"0\" aria-label=\"" + caption + "\"><table>\n<caption>" +
                      caption + "</caption>\n<thead><tr>";
   for (const Column& column : columns) {
     html += "<th scope=\"col\" data-name=\"" + column.title + "\" data-unit=\"" + column.unit + '"' +

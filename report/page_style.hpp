@@ -69,7 +69,7 @@ svg text.faint,svg .unit,svg .right,svg .tick{fill:var(--soft)}
 svg .tick,svg .on-light,svg .on-dark{text-anchor:middle}
 svg .right{text-anchor:end}
 svg .on-light,svg .on-dark{font-size:10px;pointer-events:none}
-svg .on-light{fill:#1d1c1a}
+svg .on-light{fill:#000}
 svg .on-dark{fill:#fff}
 .plan .wall{fill:var(--wall);stroke:var(--wall);stroke-linejoin:miter}
 .plan .floor{fill:var(--floor);stroke:var(--floor);stroke-width:.8}
@@ -111,7 +111,7 @@ th[aria-sort=descending] .sort::after{content:" \2193"}
 max-width:60vw}
 .paper{display:none}
 .fold{margin-top:-14px;font-size:.88rem}
-table.folded:not(.filtered) tr.more{display:none}
+table.folded:not(.filtered) tr.more:not(.chosen,:target){display:none}
 tr.chosen th,tr.chosen td,tr:target th,tr:target td{background:var(--tint)}
 .readout{min-height:1.6em;font-size:.95rem;margin:.4em 0 0}
 .switches{display:flex;gap:22px;font-size:.88rem;margin-bottom:8px}
@@ -146,7 +146,7 @@ svg .off{display:none}
 .picked div{min-width:0}
 @media (max-width:900px){.first{grid-template-columns:minmax(0,1fr);gap:20px}.glance dl.figures{grid-template-columns:repeat(auto-fill,minmax(150px,1fr))}}
 @media (max-width:640px){main,header,footer{padding-left:20px;padding-right:20px}header{padding-top:40px}
-h1{font-size:2rem}section{margin:56px 0}figure:has(>svg){overflow-x:auto}svg.plan,svg.chart{min-width:620px}
+h1{font-size:2rem}section{margin:56px 0}figure:has(>svg.plan){overflow-x:auto}svg.plan{min-width:620px}svg.chart{font-size:19px;overflow:visible}
 caption{max-width:calc(100vw - 40px)}}
 @media (min-width:641px){.filter{position:relative;z-index:1;width:fit-content;margin:30px 0 -56px auto}}
 @page{margin:17mm 16mm 18mm;@bottom-right{content:counter(page) " / " counter(pages);font:8pt system-ui,"Liberation Sans",Arial,sans-serif;color:#55524d}}

@@ -175,9 +175,9 @@ std::string viewerSection(const ReportInput& input, const PlanScale& scale) {
       "scripts.</p></noscript>\n<div id=\"viewer\" hidden>\n" +
       controlsHtml() +
       "<div class=\"stage\"><canvas tabindex=\"0\" role=\"application\" aria-label=\"The building in 3D: "
-      "drag to "
-      "turn, wheel to come closer, click a surface to ask it; when walking, arrow keys; Enter asks the "
-      "surface in the middle\"></canvas></div>\n" +
+      "drag or arrow keys turn it, wheel or plus and minus come closer, a click asks a surface, Enter the "
+      "one "
+      "in the middle; when walking, arrow keys go\"></canvas></div>\n" +
       legendHtml(scale) +
       "<div class=\"picked\" aria-live=\"polite\">Click a surface to see its figures. Walls are seen from "
       "the "

@@ -115,8 +115,9 @@ std::string sensorsSvg(const ReportInput& input, std::size_t g, const Sheet& she
   svg += "</g>\n" + isoluxSvg(grid, input.solution.grids.at(g), sheet, scale) + "<g class=\"values\">\n";
   for (const std::size_t s : labelledSensors(grid, sheet.plan, sheet.scale)) {
     const double lx = values[s].illuminance_lx;
-    svg += textAt(sheet.x(grid.points[s].x), sheet.y(grid.points[s].y) + 3.5,
-                  scale.fraction(lx) > 0.5 ? "on-light" : "on-dark", illuminanceText(lx));
+    svg +=
+        textAt(sheet.x(grid.points[s].x), sheet.y(grid.points[s].y) + 3.5,
+               wantsBlackText(falseColour(scale.fraction(lx))) ? "on-light" : "on-dark", illuminanceText(lx));
   }
   return svg + "</g>\n";
 }

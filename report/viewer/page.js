@@ -25,6 +25,7 @@
 
   const sortable = (table) => {
     const body = table.tBodies[0];
+    if (body.rows.length < 2) return;
     const heads = [...table.tHead.rows[0].cells];
     const rest = body.querySelectorAll("tr.more").length; // rows that stay folded, however they are sorted
     heads.forEach((head, column) => {

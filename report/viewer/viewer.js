@@ -291,7 +291,26 @@ class Viewer {
     });
     this.canvas.addEventListener("keydown", (event) => {
       if (event.key === "Enter") this.pick(0.5, 0.5);
+      else if (this.orbit.enabled) this.turn(event);
     });
+  }
+
+  /** Goes round the building by arrow keys, nearer and farther by plus and minus. */
+  turn(event) {
+    const step = Math.PI / 24;
+    const [around, down, scale] =
+      { ArrowLeft: [-1, 0, 1], ArrowRight: [1, 0, 1], ArrowUp: [0, -1, 1], ArrowDown: [0, 1, 1],
+        "+": [0, 0, 0.88], "-": [0, 0, 1 / 0.88] }[event.key] ?? [0, 0, 0];
+    if (!scale) return;
+    event.preventDefault();
+    const way = this.camera.position.clone().sub(this.orbit.target).multiplyScalar(scale);
+    const fromTop = Math.acos(way.z / way.length());
+    const turned = Math.min(Math.max(fromTop + down * step, 0.02), Math.PI - 0.02);
+    const direction = Math.atan2(way.y, way.x) + around * step;
+    const flat = way.length() * Math.sin(turned);
+    const up = way.length() * Math.cos(turned);
+    this.camera.position.set(flat * Math.cos(direction), flat * Math.sin(direction), up).add(this.orbit.target);
+    this.orbit.update();
   }
 
   /** Asks the surface under a point of the picture, [0, 1] from its upper left corner. */
