@@ -122,7 +122,8 @@ svg .off{display:none}
 .exposure{display:block;font-size:.88rem}
 .exposure input{margin-right:8px}
 .glance h2{font-weight:600;font-size:1.02rem;margin:0}
-.glance dl.figures{grid-template-columns:1fr 1fr;gap:20px 24px;margin:18px 0 26px}
+.glance dl.figures{gap:20px 24px;margin:18px 0 26px}
+.first .glance dl.figures{grid-template-columns:1fr 1fr}
 .glance p{margin:.9em 0 0}
 .glance table{font-size:.86rem}
 .glance tbody td:not(.n){min-width:0}
@@ -144,7 +145,7 @@ svg .off{display:none}
 .picked dt{font-size:.8rem;color:var(--soft)}
 .picked dd{margin:0;overflow-wrap:anywhere}
 .picked div{min-width:0}
-@media (max-width:900px){.first{grid-template-columns:minmax(0,1fr);gap:20px}.glance dl.figures{grid-template-columns:repeat(auto-fill,minmax(150px,1fr))}}
+@media (max-width:900px){.first{grid-template-columns:minmax(0,1fr);gap:20px}.first .glance dl.figures{grid-template-columns:repeat(auto-fill,minmax(150px,1fr))}}
 @media (max-width:640px){main,header,footer{padding-left:20px;padding-right:20px}header{padding-top:40px}
 h1{font-size:2rem}section{margin:56px 0}figure:has(>svg.plan){overflow-x:auto}svg.plan{min-width:620px}svg.chart{font-size:19px;overflow:visible}
 caption{max-width:calc(100vw - 40px)}}
@@ -164,7 +165,7 @@ footer,.filter,.fold,.switches,.readout,.exposure,.theme,.screen{display:none!im
 figure{margin:5mm 0}figcaption{margin-top:2mm;font-size:8.6pt;max-width:none}.chart{max-width:128mm}tr.more{display:none}th[aria-sort] .sort::after{content:""}button.sort{display:contents!important}
 table{font-size:8.6pt}th,td{padding:1.6mm 2mm 1.6mm 0}.n{padding-left:2mm;padding-right:0}
 .n+th:not(.n),.n+td:not(.n){padding-left:4mm}tbody th:not(.n),tbody td:not(.n){min-width:4.6em}tbody th:not(.n){min-width:8.8em}tbody tr:nth-child(-n+2):not(:last-child){break-after:avoid}tbody tr:nth-last-child(-n+2):not(:first-child){break-before:avoid}
-dl.figures{grid-template-columns:repeat(4,1fr);gap:3mm 6mm;margin:3mm 0}dl.figures dt{font-size:7.8pt}dl.figures dd{font-size:15pt}.glance dl.figures{grid-template-columns:repeat(6,1fr);gap:3mm 4mm;margin:3mm 0}.glance p{margin:2mm 0 0;max-width:none}
+dl.figures{grid-template-columns:repeat(4,1fr);gap:3mm 6mm;margin:3mm 0}dl.figures dt{font-size:7.8pt}dl.figures dd{font-size:15pt}.glance dl.figures,.first .glance dl.figures{grid-template-columns:repeat(6,1fr);gap:3mm 4mm;margin:3mm 0}.glance p{margin:2mm 0 0;max-width:none}
 svg.plan{max-height:112mm}h3{margin:5mm 0 2mm}a{text-decoration:none}}
 )css";
 
