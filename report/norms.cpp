@@ -127,7 +127,7 @@ std::string roomChecksHtml(const ReportInput& input, std::size_t room) {
                         : verdictHtml(level != "none", level == "none" ? "not met" : "met, " + level)});
   }
   if (rows.empty()) return {};
-  return tableHtml("Checks", {{"Check", "", false}, {"Computed", "", false}, {"Verdict", "", false}}, rows);
+  return tableHtml("Checks", {{"Check", "", false}, {"Computed", "", false}, {"Result", "", false}}, rows);
 }
 
 namespace {
@@ -141,12 +141,12 @@ std::string en17037Glance(const ReportInput& input) {
     if (isOne && other.met) level = &other;
   }
   const auto here = [&](double share_pct) {
-    return isOne ? " (here on " + fixedNumber(share_pct, 0) + " %)" : std::string();
+    return isOne ? " (here on " + fixedNumber(share_pct, 0) + "\u00a0%)" : std::string();
   };
   return "its " + std::string(level->name) + " level asks a daylight factor of " +
-         factorText(level->target_pct) + " % on half of the area" + here(level->shareTarget_pct) +
-         " and of " + factorText(level->minimum_pct) + " % on 95 % of it" + here(level->shareMinimum_pct) +
-         ".";
+         factorText(level->target_pct) + "\u00a0% on half of the area" + here(level->shareTarget_pct) +
+         " and of " + factorText(level->minimum_pct) + "\u00a0% on 95\u00a0% of it" +
+         here(level->shareMinimum_pct) + ".";
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ std::string figuresOfOne(const ReportInput& input) {
                     figureHtml("Minimum daylight factor", factorText(m.daylightFactor_pct->min), "%")
               : figureHtml("Median illuminance", illuminanceText(m.illuminance_lx.median), "lx") +
                     figureHtml("Area of 300 to 3000 lx", fixedNumber(m.share300To3000_pct, 0), "%");
-  return html + figureHtml("Error, 95 of 100 sensors", errorText(m), "%, estimated") + "</dl>\n";
+  return html + figureHtml("Error, 95 % of sensors", errorText(m), "%, est.") + "</dl>\n";
 }
 
 /// The figures of the first grids of several.

@@ -123,7 +123,7 @@ svg .off{display:none}
 .exposure input{margin-right:8px}
 .glance h2{font-weight:600;font-size:1.02rem;margin:0}
 .glance dl.figures{gap:20px 24px;margin:18px 0 26px}
-.first .glance dl.figures{grid-template-columns:1fr 1fr}
+.first .glance dl.figures{grid-template-columns:repeat(2,minmax(0,1fr));gap:20px 12px}
 .glance p{margin:.9em 0 0}
 .glance table{font-size:.86rem}
 .glance tbody td:not(.n){min-width:0}
@@ -156,7 +156,8 @@ caption{max-width:calc(100vw - 40px)}}
 *{-webkit-print-color-adjust:exact;print-color-adjust:exact}
 body{font-size:10pt}main,header,footer{max-width:none;padding:0}header{padding-top:0}nav{display:none}
 section{margin:12mm 0 0;padding-top:6mm}
-.room{break-before:page;margin-top:0;padding-top:0;border-top:0}.paper{display:block;margin:-3mm 0 5mm}.falsecolours+.room{break-before:auto;margin-top:12mm}.room>.lead{break-after:avoid}
+.room{break-before:page;margin-top:0;padding-top:0;border-top:0}section:last-of-type{break-inside:avoid}ul.list li{padding:1.2mm 0}.glance th,.glance td{padding-top:1mm;padding-bottom:1mm}.glance a{display:none}
+.paper{display:block;margin:-3mm 0 5mm}.falsecolours+.room{break-before:auto;margin-top:12mm}.room>.lead{break-after:avoid}
 h2,h3,caption,thead{break-after:avoid}figure,dl.figures,tr,ul.list,pre{break-inside:avoid}tbody{break-before:avoid}
 thead{display:table-header-group;break-inside:avoid}tr.chosen th,tr.chosen td{background:none}.plan .sensors rect.chosen{stroke:none}.table{overflow:visible;margin:5mm 0}.short{break-inside:avoid}
 footer,.filter,.fold,.switches,.readout,.exposure,.theme,.screen{display:none!important}

@@ -75,7 +75,8 @@ const use = async (report, isFirst) => {
       await head.locator("button").click();
       const [shown, hidden] = await table.evaluate((element) => {
         const column = [...element.tHead.rows[0].cells].findIndex((cell) => cell.dataset.name === "Mean");
-        const values = (isShown) => [...element.tBodies[0].rows].filter((row) => (row.offsetParent !== null) === isShown)
+        const rows = [...element.tBodies[0].rows].filter((row) => !row.matches(".chosen")); // that one shows anywhere
+        const values = (isShown) => rows.filter((row) => (row.offsetParent !== null) === isShown)
           .map((row) => parseFloat(row.cells[column].textContent.replace(/[\s\u202f]/g, "")));
         return [values(true), values(false)];
       });

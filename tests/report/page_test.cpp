@@ -134,8 +134,9 @@ TEST(Page, FirstScreenJudgesTheOneGrid) {
     sensors[i].illuminance_lx = sensors[i].sky_lx = i < 60 ? 500.0 : i < 95 ? 200.0 : 20.0;
   const std::string first = firstScreenOf(made);
   for (const char* text :
-       {"met, medium", "3.1 % on half of the area (here on 60 %)", "1.9 % on 95 % of it (here on 95 %)",
-        "<dt>Mean illuminance</dt><dd>371 ", "<dt>Minimum illuminance</dt><dd>20 ", "<dd>0.05</dd>"}) {
+       {"met, medium", "3.1\u00a0% on half of the area (here on 60\u00a0%)",
+        "1.9\u00a0% on 95\u00a0% of it (here on 95\u00a0%)", "<dt>Mean illuminance</dt><dd>371 ",
+        "<dt>Minimum illuminance</dt><dd>20 ", "<dd>0.05</dd>"}) {
     EXPECT_NE(first.find(text), std::string::npos) << text;
   }
 }
