@@ -34,6 +34,18 @@ DisplayColour falseColour(double fraction) {
   return colour;
 }
 
+bool wantsBlackText(const DisplayColour& ground) {
+  const auto linear = [](std::uint8_t byte) {
+    const double x = byte / 255.0;
+    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+  };
+  const double luminance =
+      0.2126 * linear(ground[0]) + 0.7152 * linear(ground[1]) + 0.0722 * linear(ground[2]);
+  // WCAG 2.2's contrast is (L + 0.05) : (l + 0.05); both texts have the same where L + 0.05 is sqrt(1.05 *
+  // 0.05).
+  return luminance > std::sqrt(1.05 * 0.05) - 0.05;
+}
+
 std::string hexColour(const DisplayColour& colour) {
   constexpr const char* digits = "0123456789abcdef";
   std::string text = "#";

@@ -14,6 +14,9 @@ using DisplayColour = std::array<std::uint8_t, 3>;
 /// The colour at `fraction` of the scale, dark to light. Outside [0, 1] the ends hold; NaN is the dark end.
 DisplayColour falseColour(double fraction);
 
+/// Whether black is easier to read on a colour than white is: either has a contrast of 4.58 : 1 at least.
+bool wantsBlackText(const DisplayColour& ground);
+
 /// "#rrggbb"
 std::string hexColour(const DisplayColour& colour);
 

@@ -60,7 +60,9 @@ DisplayTransform::DisplayTransform() : processor_(std::make_unique<Processor>())
   } catch (const std::exception& error) {
     if (isShipped_)
       throw MachineError(std::string("the colours of pictures cannot be set up: ") + error.what());
-    throw InputError("the environment variable OCIO is \"" + file + "\": " + error.what() +
+    std::string reason = error.what();
+    if (reason.ends_with('.')) reason.pop_back();
+    throw InputError("the environment variable OCIO is \"" + file + "\": " + reason +
                      "; correct or unset it");
   }
 }

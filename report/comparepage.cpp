@@ -99,10 +99,10 @@ std::string planSvg(const GridComparison& grid, double end, std::size_t number) 
   const auto x = [&](const SensorPair& pair) { return (pair.place_m.x - plan.low_m.x) * scale; };
   const auto y = [&](const SensorPair& pair) { return (plan.high_m.y - pair.place_m.y) * scale; };
 
-  std::string svg = "<svg class=\"plan\" role=\"img\" viewBox=\"0 0 " + shortNumber(width) + " " +
-                    shortNumber(height + legendHeight_px) + "\" style=\"max-width:" + shortNumber(width) +
-                    "px\" aria-label=\"Plan of the errors of " + nameOf(grid) +
-                    "\">\n<g class=\"sensors\">\n";
+  std::string svg =
+      "<svg class=\"plan\" role=\"img\" tabindex=\"0\" viewBox=\"0 0 " + shortNumber(width) + " " +
+      shortNumber(height + legendHeight_px) + "\" style=\"max-width:" + shortNumber(width) +
+      "px\" aria-label=\"Plan of the errors of " + nameOf(grid) + "\">\n<g class=\"sensors\">\n";
   for (const SensorPair& pair : grid.pairs) {
     svg += "<rect" + attribute("x", x(pair) - 0.5 * cell) + attribute("y", y(pair) - 0.5 * cell) +
            attribute("width", cell) + attribute("height", cell) + " fill=\"" +

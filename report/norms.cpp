@@ -39,7 +39,7 @@ bool isAsked(const Study& study, const std::string& norm) {
 
 std::string whyNoEn17037(const Study& study) {
   const bool isOvercast = !study.sky.isPerez && (study.sky.cieType == 1 || study.sky.cieType == 16);
-  if (!isOvercast) return "its daylight factor method is defined under \"cie-overcast\" and \"cie-1\" alone";
+  if (!isOvercast) return "its daylight factors are those of an overcast sky, \"cie-overcast\" or \"cie-1\"";
   if (!(study.sky.diffuseHorizontal_lx > 0.0)) return "the sky is dark";
   if (!(study.site.externalDiffuse_lx > 0.0)) return "site.external_diffuse_lx is not stated";
   return {};
@@ -53,6 +53,12 @@ std::optional<std::string> en17037Level(const GridValues& grid, const Study& stu
     if (level.met) best = level.name;
   }
   return best;
+}
+
+std::string en17037Verdict(const GridValues& grid, const Study& study) {
+  const auto best = en17037Level(grid, study);
+  if (!best) return {};
+  return *best == "none" ? verdictHtml(false, "not met") : verdictHtml(true, "met, " + *best);
 }
 
 std::string whyNoLeedHour(const Study& study) {
@@ -121,7 +127,50 @@ std::string roomChecksHtml(const ReportInput& input, std::size_t room) {
                         : verdictHtml(level != "none", level == "none" ? "not met" : "met, " + level)});
   }
   if (rows.empty()) return {};
-  return tableHtml("Checks", {{"Check", "", false}, {"Computed", "", false}, {"", "", false}}, rows);
+  return tableHtml("Checks", {{"Check", "", false}, {"Computed", "", false}, {"Result", "", false}}, rows);
+}
+
+namespace {
+
+/// What EN 17037 asks at the level that a single grid meets, or at its least one, and what the grid has.
+std::string en17037Glance(const ReportInput& input) {
+  const auto en = en17037Of(input.solution.grids.at(0), input.study);
+  const bool isOne = input.solution.grids.size() == 1;
+  const En17037::Level* level = &en->levels.front();
+  for (const En17037::Level& other : en->levels) {
+    if (isOne && other.met) level = &other;
+  }
+  const auto here = [&](double share_pct) {
+    return isOne ? " (here on " + fixedNumber(share_pct, 0) + "\u00a0%)" : std::string();
+  };
+  return "its " + std::string(level->name) + " level asks a daylight factor of " +
+         factorText(level->target_pct) + "\u00a0% on half of the area" + here(level->shareTarget_pct) +
+         " and of " + factorText(level->minimum_pct) + "\u00a0% on 95\u00a0% of it" +
+         here(level->shareMinimum_pct) + ".";
+}
+
+}  // namespace
+
+std::string glanceNormsHtml(const ReportInput& input) {
+  const Study& study = input.study;
+  const GridValues& first = input.solution.grids.at(0);
+  const bool isOne = input.solution.grids.size() == 1;
+  std::string html;
+  const std::string why = whyNoEn17037(study);
+  if (why.empty()) {
+    html += isOne ? "<p>EN 17037 " + en17037Verdict(first, study) +
+                        "<span class=\"note\">: " + en17037Glance(input) + "</span></p>\n"
+                  : "<p class=\"note\">EN 17037: " + en17037Glance(input) + "</p>\n";
+  } else {
+    html += "<p class=\"note\">EN 17037’s daylight provision is not judged: " + escapeHtml(why) + ".</p>\n";
+  }
+  const auto leed = isOne && isAsked(study, "leed") ? leedHourOf(first, study) : std::nullopt;
+  if (leed) {
+    html += "<p>LEED " + verdictHtml(leed->pointsV4 > 0, std::to_string(leed->pointsV4) + " of 2 points") +
+            "<span class=\"note\">, version 4, option 2, this hour: " + fixedNumber(leed->share_pct, 0) +
+            " % of the area has 300 to 3000 lx; 75 % are asked.</span></p>\n";
+  }
+  return html;
 }
 
 }  // namespace clerestory

@@ -18,6 +18,9 @@ std::string whyNoEn17037(const Study& study);
 /// The highest level of EN 17037 that a grid reaches, "none" or, where it cannot be judged, nothing.
 std::optional<std::string> en17037Level(const GridValues& grid, const Study& study);
 
+/// The page's verdict by that level; empty where the norm cannot be judged.
+std::string en17037Verdict(const GridValues& grid, const Study& study);
+
 /// LEED's daylight option 2 for the one hour that a study has: the share of sensors from 300 to 3,000 lx and
 /// the points that it would earn, were the other hour as good.
 struct LeedHour {
@@ -35,5 +38,9 @@ std::string sunlightLevel(const Study& study, double hours);
 /// A room's checks for the page: the average daylight factor by formula beside the computed one, hours of
 /// sunlight, LEED where it is asked for.
 std::string roomChecksHtml(const ReportInput& input, std::size_t room);
+
+/// What the norms say of a study, for the page's first screen: each verdict and what it asks, or why there is
+/// none.
+std::string glanceNormsHtml(const ReportInput& input);
 
 }  // namespace clerestory

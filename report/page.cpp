@@ -8,12 +8,12 @@
 #include <solver/daylight.hpp>
 
 #include "escape.hpp"
-#include "falsepicture.hpp"
 #include "json.hpp"
 #include "luminairerows.hpp"
 #include "metrics.hpp"
 #include "norms.hpp"
 #include "numbers.hpp"
+#include "page_first.hpp"
 #include "page_parts.hpp"
 #include "page_style.hpp"
 #include "plan.hpp"
@@ -22,7 +22,7 @@
 namespace clerestory {
 namespace {
 
-constexpr std::size_t mostSurfaceRows = 16;  // of a room's table before the reader asks for more
+constexpr std::size_t mostSurfaceRows = 12;  // of a room's table before the reader asks for more
 
 /// What all sections need, made once.
 struct Page {
@@ -94,103 +94,6 @@ std::string headerHtml(const Page& page) {
   return html + contentsHtml(page) + "</header>\n";
 }
 
-std::string pictureHtml(const std::string& png, const std::string& alt, int width, int height) {
-  return "<img src=\"data:image/png;base64," + base64(png) + "\" width=\"" + std::to_string(width) +
-         "\" height=\"" + std::to_string(height) + "\" alt=\"" + alt + "\">";
-}
-
-std::string viewFigure(const PageView& view) {
-  const std::string name = escapeHtml(view.name);
-  // Where middle grey lies: the luminance that a reader may compare with.
-  return "<figure>" + pictureHtml(view.png, "Rendered view " + name, view.width, view.height) +
-         "<figcaption>View “" + name + "”, exposed for EV " + fixedNumber(view.exposure_ev, 1) +
-         " at ISO 100: middle grey is " + roundedNumber(0.18 * view.white_cd_m2) +
-         " cd/m². Luminances are in <code>view-" + escapeHtml(view.fileName) +
-         ".exr</code>.</figcaption></figure>\n";
-}
-
-/// The views in false colours, folded away until they are asked for.
-std::string falseColours(const std::vector<PageView>& views) {
-  std::string html =
-      "<details class=\"falsecolours\"><summary>Views in false colours</summary>\n<div class=\"rest\">\n";
-  for (const PageView& view : views) {
-    for (const auto& [kind, png] :
-         {std::pair{"Luminance", &view.luminancePng}, std::pair{"Illuminance", &view.illuminancePng}}) {
-      if (png->empty()) continue;
-      const std::string text = std::string(kind) + " in view “" + escapeHtml(view.name) + "”";
-      html += "<figure>" + pictureHtml(*png, text, view.width, view.height + falseLegend_px) +
-              "<figcaption>" + text + "</figcaption></figure>\n";
-    }
-  }
-  return html + "</div>\n</details>\n";
-}
-
-/// Whether EN 17037's least level is met, or nothing where it cannot be asked.
-std::string verdict(const Page& page, std::size_t g) {
-  const auto en = en17037Of(page.input.solution.grids.at(g), page.input.study);
-  if (!en) return {};
-  const char* best = nullptr;
-  for (const En17037::Level& level : en->levels) {
-    if (level.met) best = level.name;
-  }
-  return best == nullptr ? "<span class=\"no\">not met</span>"
-                         : "<span class=\"yes\">met, " + std::string(best) + "</span>";
-}
-
-std::string errorText(const GridMetrics& m) {
-  return "± " + fixedNumber(m.p95ErrorEstimate_pct, 1);
-}
-
-/// What a reader wants to know first, beside the first view.
-std::string summaryTable(const Page& page) {
-  constexpr std::size_t mostRows = 8;
-  const ReportInput& input = page.input;
-  const bool withFactor = hasDaylightFactor(input.study.sky);
-  const std::size_t grids = input.building.grids.size();
-  if (grids == 0) return {};
-  bool anyVerdict = false;
-  for (std::size_t g = 0; g < grids; ++g) anyVerdict = anyVerdict || !verdict(page, g).empty();
-  std::vector<std::vector<std::string>> rows;
-  for (std::size_t g = 0; g < std::min(grids, mostRows); ++g) {
-    const SensorGrid& grid = input.building.grids[g];
-    const GridMetrics m = metricsOf(input.solution.grids.at(g), input.study.sky);
-    rows.push_back({nameHtml(roomName(input.building, grid.room)), illuminanceText(m.illuminance_lx.mean)});
-    if (withFactor) rows.back().push_back(factorText(m.daylightFactor_pct->median));
-    rows.back().push_back(errorText(m));
-    if (anyVerdict) rows.back().push_back(verdict(page, g));
-  }
-  std::vector<Column> columns = {{"Room", "", false}, {"Mean", "lx"}};
-  if (withFactor) columns.push_back({"Median DF", "%"});
-  columns.push_back({"Error", "%"});
-  if (anyVerdict) columns.push_back({"EN 17037", "", false});
-  std::string html = tableHtml("At a glance", columns, rows) +
-                     "<p class=\"note\">Error: estimated; 95 of 100 sensors are off by less." +
-                     (withFactor ? " DF: daylight factor." : "") + "</p>\n";
-  if (grids > mostRows) {
-    html += "<p class=\"note\"><a href=\"#overview\">All " + std::to_string(grids) + " grids</a></p>\n";
-  }
-  return html;
-}
-
-/// The first screen: a view, and beside it the figures; further views below.
-std::string firstHtml(const Page& page) {
-  const std::vector<PageView>& views = page.pictures.views;
-  const std::string summary = summaryTable(page);
-  if (views.empty()) return summary;
-  std::string html =
-      "<svg width=\"0\" height=\"0\" aria-hidden=\"true\" class=\"unseen\"><filter id=\"exposure\" "
-      "color-interpolation-filters=\"linearRGB\"><feComponentTransfer><feFuncR type=\"linear\"/><feFuncG "
-      "type=\"linear\"/><feFuncB type=\"linear\"/></feComponentTransfer></filter></svg>\n<div "
-      "class=\"views\">\n<div class=\"first\">\n" +
-      viewFigure(views.front()) + "<div class=\"glance\">\n" + summary + "</div>\n</div>\n";
-  if (views.size() > 1) {
-    html += "<div class=\"rest\">\n";
-    for (std::size_t v = 1; v < views.size(); ++v) html += viewFigure(views[v]);
-    html += "</div>\n";
-  }
-  return html + "</div>\n" + falseColours(views);
-}
-
 std::string overviewSection(const Page& page) {
   const ReportInput& input = page.input;
   std::vector<std::vector<std::string>> rows;
@@ -212,7 +115,7 @@ std::string overviewSection(const Page& page) {
       row.push_back(fixedNumber(m.shareAbove2_pct, 0));
     }
     row.push_back(errorText(m));
-    if (withFactor) row.push_back(verdict(page, g));
+    if (withFactor) row.push_back(en17037Verdict(input.solution.grids.at(g), input.study));
     rows.push_back(row);
   }
   if (rows.size() < 2) return {};  // one grid's figures follow at once
@@ -274,10 +177,10 @@ std::string norm(const Page& page, std::size_t g) {
                        " lx median external diffuse",
                    {{"Level", "", false},
                     {"Target DF", "%"},
-                    {"Sensors above, 50 asked", "%"},
+                    {"Area with it", "%, 50 asked"},
                     {"Minimum DF", "%"},
-                    {"Sensors above, 95 asked", "%"},
-                    {"", "", false}},
+                    {"Area with it", "%, 95 asked"},
+                    {"Verdict", "", false}},
                    rows);
 }
 
@@ -381,6 +284,19 @@ std::string unjudgedNorms(const Study& study) {
   return html;
 }
 
+/// What is taken off the glass' transmittance.
+std::string allowancesText(const Study& study) {
+  const auto factor = [](double value, const char* name) {
+    return value == 1.0 ? std::string() : shortNumber(value) + " for " + name;
+  };
+  const std::string dirt = factor(study.dirtFactor, "dirt");
+  const std::string frames = factor(study.frameFactor, "frames");
+  if (dirt.empty() && frames.empty())
+    return "Panes are clean, and no frames are reckoned with but those of the model.";
+  return "Transmittances are multiplied by " + dirt + (dirt.empty() || frames.empty() ? "" : " and by ") +
+         frames + ".";
+}
+
 std::string assumptionsSection(const Page& page) {
   const Study& study = page.input.study;
   std::string html = sectionOpening("assumptions", "Assumptions and diagnoses");
@@ -389,9 +305,8 @@ std::string assumptionsSection(const Page& page) {
     html += "<li>" + escapeHtml(withoutFolders(study, text)) + "</li>\n";
   }
   html += "<li>The ground reflects " + shortNumber(100.0 * study.groundReflectance) +
-          " % where the model draws none.</li>\n<li>Transmittances are multiplied by " +
-          shortNumber(study.dirtFactor) + " for dirt and by " + shortNumber(study.frameFactor) +
-          " for frames.</li>\n" + unjudgedNorms(study) + "</ul>\n";
+          " % where the model draws none.</li>\n<li>" + allowancesText(study) + "</li>\n" +
+          unjudgedNorms(study) + "</ul>\n";
   if (page.input.diagnoses.empty()) {
     return html + "<p>Nothing in the model needed repair or attention.</p>\n</section>\n";
   }
@@ -465,7 +380,7 @@ std::string againSection(const Page& page) {
 std::string pageHtml(const ReportInput& input, const PagePictures& pictures) {
   const Page page{input, pictures, planScale(input.solution), surfaceRowNames(input)};
   return headHtml(input, escapeHtml(modelName(input.study))) + headerHtml(page) + "<main>\n" +
-         firstHtml(page) + overviewSection(page) + roomSections(page) +
+         firstScreenHtml(input, pictures.views) + overviewSection(page) + roomSections(page) +
          viewerSection(page.input, page.scale) + assumptionsSection(page) + accuracySection(page.input) +
          materialsSection(page) + luminairesSection(page.input) + againSection(page) +
          "</main>\n<footer>Clerestory " + escapeHtml(input.run.version) + "</footer>\n" + scriptsHtml(input) +

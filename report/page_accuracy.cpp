@@ -181,6 +181,16 @@ std::string energyTable(const ReportInput& input) {
                    rows);
 }
 
+/// What was dropped and moved before anything was computed.
+std::string repairText(const CleanupCounts& counts) {
+  const std::string dropped = counts.degenerateFaces + counts.duplicateFaces == 0
+                                  ? "No face was dropped"
+                                  : count(counts.degenerateFaces) + " faces without area and " +
+                                        count(counts.duplicateFaces) +
+                                        " drawn twice were dropped, which takes no light away";
+  return dropped + "; " + count(counts.pointsWelded) + " points were moved onto others, by 1 mm at most.";
+}
+
 /// What of the model was computed, what was not, and what the figures took.
 std::string modelledList(const ReportInput& input) {
   const CleanupCounts& counts = input.building.model.counts;
@@ -205,14 +215,12 @@ std::string modelledList(const ReportInput& input) {
   }
   std::uint64_t figures = solution.surfaces.size();
   for (const GridValues& grid : solution.grids) figures += grid.sensors.size();
-  std::string html = "<h3>What was modelled</h3>\n<ul>\n<li>" + count(counts.facesRead) +
+  std::string html = "<h3>What was modelled</h3>\n<ul class=\"list\">\n<li>" + count(counts.facesRead) +
                      " faces were read; " + count(counts.polygons) + " planar polygons, in " +
                      count(input.building.model.pieces.size()) +
-                     " convex pieces, are left of them.</li>\n<li>" + count(counts.degenerateFaces) +
-                     " faces without area and " + count(counts.duplicateFaces) +
-                     " drawn twice were dropped, which takes no light away; " + count(counts.pointsWelded) +
-                     " points were moved onto others, by 1 mm at most.</li>\n<li>The light has " +
-                     count(solution.elements) + " elements with " + std::to_string(solution.columns) +
+                     " convex pieces, are left of them.</li>\n<li>" + repairText(counts) +
+                     "</li>\n<li>The light has " + count(solution.elements) + " elements with " +
+                     std::to_string(solution.columns) +
                      (solution.columns == 1 ? " value each.</li>\n" : " values each.</li>\n");
   if (figures > 0) {
     html += "<li>" + count(links) + " links were made, " +

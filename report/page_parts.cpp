@@ -4,6 +4,7 @@
 
 #include "colormap.hpp"
 #include "escape.hpp"
+#include "numbers.hpp"
 
 namespace clerestory {
 
@@ -12,7 +13,7 @@ std::string tableHtml(const std::string& caption, const std::vector<Column>& col
                       std::size_t mostRows) {
   constexpr std::size_t mostUnbroken = 8;  // rows that paper keeps on one page
   std::string html = std::string("<div class=\"table") + (rows.size() <= mostUnbroken ? " short" : "") +
-                     "\" role=\"region\" tabindex=\"0\" aria-label=\"" + caption + "\"><table>\n<caption>" +
+                     "\" role=\"group\" tabindex=\"0\" aria-label=\"" + caption + "\"><table>\n<caption>" +
                      caption + "</caption>\n<thead><tr>";
   for (const Column& column : columns) {
     html += "<th scope=\"col\" data-name=\"" + column.title + "\" data-unit=\"" + column.unit + '"' +
@@ -32,12 +33,21 @@ std::string tableHtml(const std::string& caption, const std::vector<Column>& col
     }
     html += "</tr>\n";
   }
-  return html + "</tbody></table></div>\n";
+  html += "</tbody></table></div>\n";
+  if (rows.size() > mostRows) {
+    html += "<p class=\"note paper\">" + fixedNumber(static_cast<double>(mostRows), 0) + " of " +
+            fixedNumber(static_cast<double>(rows.size()), 0) + " rows; the CSV table has all.</p>\n";
+  }
+  return html;
 }
 
 std::string figureHtml(const std::string& label, const std::string& value, const std::string& unit) {
   return "<div><dt>" + label + "</dt><dd>" + value +
          (unit.empty() ? "" : " <span class=\"u\">" + unit + "</span>") + "</dd></div>\n";
+}
+
+std::string errorText(const GridMetrics& metrics) {
+  return "± " + fixedNumber(metrics.p95ErrorEstimate_pct, 1);
 }
 
 std::string sectionOpening(const std::string& id, const std::string& title, const std::string& style) {

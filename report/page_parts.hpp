@@ -10,6 +10,7 @@
 
 #include <report/report.hpp>
 
+#include "metrics.hpp"
 #include "plan.hpp"
 
 namespace clerestory {
@@ -29,6 +30,9 @@ std::string tableHtml(const std::string& caption, const std::vector<Column>& col
 
 /// One figure with its label, for a list of figures.
 std::string figureHtml(const std::string& label, const std::string& value, const std::string& unit);
+
+/// A grid's estimated error: 95 of 100 sensors are off by less. [%]
+std::string errorText(const GridMetrics& metrics);
 
 std::string sectionOpening(const std::string& id, const std::string& title, const std::string& style = "");
 

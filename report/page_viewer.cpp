@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page's section with the building in 3D, its scripts, and the policy that lets these alone run.
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "colormap.hpp"
 #include "escape.hpp"
@@ -61,13 +64,34 @@ glm::dvec3 walkStart(const Building& building, const PackedMesh& packed) {
   return sum / static_cast<double>(pieces.polygons[piece].size()) - packed.low_m;
 }
 
+/// The box round the elements inside rooms, relative to `low_m`: what the viewer looks at. A model may bring
+/// a ground or neighbours that are far larger. Where no element is in a room it is the box of all.
+std::pair<glm::dvec3, glm::dvec3> insideBox(const Solution& solution, const PackedMesh& packed) {
+  const ElementMesh& mesh = solution.mesh;
+  glm::dvec3 low_m = packed.size_m;
+  glm::dvec3 high_m(0.0);
+  for (std::size_t e = 0; e < mesh.size(); ++e) {
+    if (solution.surfaces.at(mesh.surfaceRow[e]).room < 0) continue;
+    for (std::uint32_t c = mesh.firstCorner[e]; c < mesh.firstCorner[e + 1]; ++c) {
+      const glm::dvec3 corner_m = mesh.origin_m + glm::dvec3(mesh.corners_m[c]) - packed.low_m;
+      low_m = glm::min(low_m, corner_m);
+      high_m = glm::max(high_m, corner_m);
+    }
+  }
+  if (glm::any(glm::greaterThan(low_m, high_m))) return {glm::dvec3(0.0), packed.size_m};
+  return {low_m, high_m};
+}
+
 std::string meshInfo(const ReportInput& input, const PlanScale& scale, const PackedMesh& packed) {
   const auto list = [](const glm::dvec3& v) { return nlohmann::json::array({v.x, v.y, v.z}); };
+  const auto [insideLow_m, insideHigh_m] = insideBox(input.solution, packed);
   nlohmann::json info = {{"elements", input.solution.mesh.size()},
                          {"corners", input.solution.mesh.corners_m.size()},
                          {"step_m", packed.step_m},
                          {"origin_m", list(packed.low_m)},
                          {"size_m", list(packed.size_m)},
+                         {"inside_low_m", list(insideLow_m)},
+                         {"inside_high_m", list(insideHigh_m)},
                          {"walk_m", list(walkStart(input.building, packed))},
                          {"low_lx", scale.low_lx},
                          {"high_lx", scale.high_lx},
@@ -151,9 +175,9 @@ std::string viewerSection(const ReportInput& input, const PlanScale& scale) {
       "scripts.</p></noscript>\n<div id=\"viewer\" hidden>\n" +
       controlsHtml() +
       "<div class=\"stage\"><canvas tabindex=\"0\" role=\"application\" aria-label=\"The building in 3D: "
-      "drag to "
-      "turn, wheel to come closer, click a surface to ask it; when walking, arrow keys; Enter asks the "
-      "surface in the middle\"></canvas></div>\n" +
+      "drag or arrow keys turn it, wheel or plus and minus come closer, a click asks a surface, Enter the "
+      "one "
+      "in the middle; when walking, arrow keys go\"></canvas></div>\n" +
       legendHtml(scale) +
       "<div class=\"picked\" aria-live=\"polite\">Click a surface to see its figures. Walls are seen from "
       "the "

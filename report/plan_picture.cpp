@@ -98,7 +98,8 @@ void paintSensors(DisplayImage& image, const Sheet& sheet, const SensorGrid& gri
     const double lx = values.sensors[s].illuminance_lx;
     const glm::dvec2 at = sheet.at({grid.points[s].x, grid.points[s].y});
     drawText(image, static_cast<int>(std::lround(at.x)), static_cast<int>(std::lround(at.y)) + 4,
-             shortestFloat(std::round(lx)), 12, scale.fraction(lx) > 0.5 ? ink : paper, TextAlign::centre);
+             shortestFloat(std::round(lx)), 12, wantsBlackText(falseColour(scale.fraction(lx))) ? ink : paper,
+             TextAlign::centre);
   }
 }
 

@@ -115,8 +115,9 @@ std::string sensorsSvg(const ReportInput& input, std::size_t g, const Sheet& she
   svg += "</g>\n" + isoluxSvg(grid, input.solution.grids.at(g), sheet, scale) + "<g class=\"values\">\n";
   for (const std::size_t s : labelledSensors(grid, sheet.plan, sheet.scale)) {
     const double lx = values[s].illuminance_lx;
-    svg += textAt(sheet.x(grid.points[s].x), sheet.y(grid.points[s].y) + 3.5,
-                  scale.fraction(lx) > 0.5 ? "on-light" : "on-dark", illuminanceText(lx));
+    svg +=
+        textAt(sheet.x(grid.points[s].x), sheet.y(grid.points[s].y) + 3.5,
+               wantsBlackText(falseColour(scale.fraction(lx))) ? "on-light" : "on-dark", illuminanceText(lx));
   }
   return svg + "</g>\n";
 }
@@ -181,10 +182,11 @@ std::string planSvg(const ReportInput& input, std::size_t g, const PlanScale& sc
   const double top = sheet.height + 18.0;
   const bool withFactors = hasDaylightFactor(input.study.sky) && isSkyOnly(input.solution.grids.at(g));
 
-  std::string svg =
-      "<svg class=\"plan\" role=\"img\" viewBox=\"0 0 " + shortNumber(sheet.width) + " " +
-      shortNumber(sheet.height + legendHeight_px) + "\" style=\"max-width:" + shortNumber(sheet.width) +
-      "px\" aria-label=\"Illuminance plan of " + escapeHtml(input.building.grids[g].name) + "\">\n";
+  std::string svg = "<svg class=\"plan\" role=\"img\" preserveAspectRatio=\"xMinYMin\" viewBox=\"0 0 " +
+                    shortNumber(sheet.width) + " " + shortNumber(sheet.height + legendHeight_px) +
+                    "\" style=\"max-width:" + shortNumber(sheet.width) +
+                    "px\" aria-label=\"Illuminance plan of " + escapeHtml(input.building.grids[g].name) +
+                    "\">\n";
   svg += floorSvg(sheet) + sensorsSvg(input, g, sheet, scale) + windowsSvg(sheet);
   svg += legendSvg(input, scale, 12.0, top, legendWidth, withFactors, g);
   svg += scaleBarSvg(sheet.width - 44.0, top + 10.0, sheet.scale);

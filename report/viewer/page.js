@@ -25,7 +25,9 @@
 
   const sortable = (table) => {
     const body = table.tBodies[0];
+    if (body.rows.length < 2) return;
     const heads = [...table.tHead.rows[0].cells];
+    const rest = body.querySelectorAll("tr.more").length; // rows that stay folded, however they are sorted
     heads.forEach((head, column) => {
       if (!head.textContent.trim()) return;
       const button = make("button", { type: "button", class: "sort" });
@@ -39,6 +41,7 @@
         const compare = compareCells(column, isNumber);
         const rows = [...body.rows].sort((a, b) => (down ? compare(b, a) : compare(a, b)));
         body.append(...rows);
+        rows.forEach((row, i) => row.classList.toggle("more", i >= rows.length - rest));
         heads.forEach((other) => other.removeAttribute("aria-sort"));
         head.setAttribute("aria-sort", down ? "descending" : "ascending");
       });
@@ -114,7 +117,9 @@
       chosen.classList.add("chosen");
       readout.textContent = rect.querySelector("title").textContent;
     };
-    svg.addEventListener("pointermove", (event) => choose(event.target.closest(".sensors rect")));
+    for (const type of ["pointermove", "pointerdown"]) {
+      svg.addEventListener(type, (event) => choose(event.target.closest(".sensors rect")));
+    }
     svg.addEventListener("keydown", (event) => {
       if (!event.key.startsWith("Arrow")) return;
       event.preventDefault();

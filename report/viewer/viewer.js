@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The building in 3D: the solution's elements in the page, to be turned, walked through, cut and asked.
 import {
+  Box3,
   BufferAttribute,
   BufferGeometry,
   Color,
@@ -99,10 +100,17 @@ function drawable(shared, triangles, uniforms, alpha) {
   return new Mesh(geometry, material);
 }
 
-/** Moves corners two steps outwards, so that no crack shows where a large element meets small ones. */
-function swell(mesh) {
+/**
+ * Moves corners two steps outwards, so that no crack shows where a large element meets small ones. Panes stay: what
+ * shines through twice where they overlap would show.
+ */
+function swell(mesh, glass) {
   let first = 0;
   for (const count of mesh.counts) {
+    if (glass.has(mesh.rowOfCorner[first])) {
+      first += count;
+      continue;
+    }
     const middle = [0, 0, 0];
     for (let i = 0; i < 3 * count; ++i) middle[i % 3] += mesh.positions[3 * first + i] / count;
     for (let corner = first; corner < first + count; ++corner) {
@@ -122,13 +130,14 @@ class Viewer {
   constructor(host, info, mesh) {
     this.host = host;
     this.info = info;
-    this.mesh = swell(mesh);
+    this.glass = new Set(info.glass);
+    this.mesh = swell(mesh, this.glass);
     this.canvas = host.querySelector("canvas");
     this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.outputColorSpace = SRGBColorSpace;
     this.scene = new Scene();
-    this.size = new Vector3(...info.size_m);
+    this.inside = new Box3(new Vector3(...info.inside_low_m), new Vector3(...info.inside_high_m));
     this.uniforms = {
       ramp: { value: rampTexture(info.colours) },
       scale: { value: new Vector2(Math.log2(info.low_lx), Math.log2(info.high_lx)) },
@@ -141,7 +150,7 @@ class Viewer {
     this.build();
     this.placeCamera();
     this.orbit = new OrbitControls(this.camera, this.canvas);
-    this.orbit.target.copy(this.size).multiplyScalar(0.5);
+    this.inside.getCenter(this.orbit.target);
     this.orbit.addEventListener("change", () => this.draw());
     this.orbit.update();
     this.orbit.saveState();
@@ -153,7 +162,7 @@ class Viewer {
   }
 
   build() {
-    const { mesh, info } = this;
+    const { mesh, info, glass } = this;
     const shared = {
       position: new BufferAttribute(mesh.positions, 3),
       illuminance: new BufferAttribute(mesh.illuminance, 1),
@@ -161,7 +170,6 @@ class Viewer {
       tint: new BufferAttribute(mesh.tint, 3, true),
       row: new BufferAttribute(mesh.rowOfCorner, 1),
     };
-    const glass = new Set(info.glass);
     this.solid = drawable(shared, triangulate(mesh, (row) => !glass.has(row)), this.uniforms, 1);
     this.panes = drawable(shared, triangulate(mesh, (row) => glass.has(row)), this.uniforms, 0.35);
     for (const part of [this.solid, this.panes]) {
@@ -171,13 +179,26 @@ class Viewer {
     }
   }
 
+  /** Looks down at the rooms from the south-west, from so far that they just fit into the picture. */
   placeCamera() {
-    const radius = Math.max(0.5 * this.size.length(), 0.5);
-    this.camera = new PerspectiveCamera(45, 1, radius / 500, radius * 12);
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    const aspect = width / height || 1;
+    const middle = this.inside.getCenter(new Vector3());
+    const radius = Math.max(0.5 * this.inside.getSize(new Vector3()).length(), 0.5);
+    const all = new Vector3(...this.info.size_m).length();
+    this.camera = new PerspectiveCamera(45, aspect, radius / 500, 12 * radius + all);
     this.camera.up.set(0, 0, 1);
-    const middle = this.size.clone().multiplyScalar(0.5);
-    this.camera.position.copy(middle).addScaledVector(new Vector3(-0.75, -1.1, 0.95).normalize(), 2.35 * radius);
+    this.camera.position.copy(middle).add(new Vector3(-0.75, -1.1, 0.95));
     this.camera.lookAt(middle);
+    const slope = Math.tan((0.5 * 45 * Math.PI) / 180);
+    const turned = this.camera.quaternion.clone().invert();
+    let away = 0.5;
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = [0, 1, 2].map((axis) => (corner & (1 << axis) ? this.inside.max : this.inside.min).getComponent(axis));
+      const { x, y, z } = new Vector3(...at).sub(middle).applyQuaternion(turned);
+      away = Math.max(away, z + Math.abs(y) / slope, z + Math.abs(x) / (slope * aspect));
+    }
+    this.camera.position.copy(middle).addScaledVector(new Vector3(0, 0, 1).applyQuaternion(this.camera.quaternion), 1.06 * away);
   }
 
   resize() {
@@ -250,7 +271,8 @@ class Viewer {
     const slider = this.host.querySelector('[data-viewer="section"]');
     const normal = [0, 0, 0];
     normal[axis] = 1;
-    const at = (Number(slider.value) / Number(slider.max)) * this.info.size_m[axis];
+    const [low, high] = [this.info.inside_low_m[axis], this.info.inside_high_m[axis]];
+    const at = low + (Number(slider.value) / Number(slider.max)) * (high - low);
     const whole = slider.value === slider.max;
     this.uniforms.section.value = [...normal, whole ? 1e9 : at];
     const text = whole ? "whole" : `${(at + this.info.origin_m[axis]).toFixed(2)} m`;
@@ -269,7 +291,26 @@ class Viewer {
     });
     this.canvas.addEventListener("keydown", (event) => {
       if (event.key === "Enter") this.pick(0.5, 0.5);
+      else if (this.orbit.enabled) this.turn(event);
     });
+  }
+
+  /** Goes round the building by arrow keys, nearer and farther by plus and minus. */
+  turn(event) {
+    const step = Math.PI / 24;
+    const [around, down, scale] =
+      { ArrowLeft: [-1, 0, 1], ArrowRight: [1, 0, 1], ArrowUp: [0, -1, 1], ArrowDown: [0, 1, 1],
+        "+": [0, 0, 0.88], "-": [0, 0, 1 / 0.88] }[event.key] ?? [0, 0, 0];
+    if (!scale) return;
+    event.preventDefault();
+    const way = this.camera.position.clone().sub(this.orbit.target).multiplyScalar(scale);
+    const fromTop = Math.acos(way.z / way.length());
+    const turned = Math.min(Math.max(fromTop + down * step, 0.02), Math.PI - 0.02);
+    const direction = Math.atan2(way.y, way.x) + around * step;
+    const flat = way.length() * Math.sin(turned);
+    const up = way.length() * Math.cos(turned);
+    this.camera.position.set(flat * Math.cos(direction), flat * Math.sin(direction), up).add(this.orbit.target);
+    this.orbit.update();
   }
 
   /** Asks the surface under a point of the picture, [0, 1] from its upper left corner. */

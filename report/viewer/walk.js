@@ -31,8 +31,9 @@ export class Walk {
   begin() {
     const [x, y, floor] = this.info.walk_m;
     this.camera.position.set(x, y, floor + eyeHeight_m);
-    const [width, depth] = this.info.size_m;
-    const [ahead, aside] = [depth / 2 - y, width / 2 - x];
+    const [low, high] = [this.info.inside_low_m, this.info.inside_high_m];
+    const [width, depth] = [high[0] - low[0], high[1] - low[1]];
+    const [ahead, aside] = [(low[1] + high[1]) / 2 - y, (low[0] + high[0]) / 2 - x];
     const isMiddle = Math.hypot(ahead, aside) < 2;
     this.turn = isMiddle ? (width > depth ? -Math.PI / 2 : 0) : Math.atan2(-aside, ahead);
     this.tilt = 0;

@@ -68,6 +68,36 @@ const use = async (report, isFirst) => {
       assert.ok((await table.locator("tbody tr:not([hidden])").count()) > 10);
     });
 
+    await step("a folded table shows the first rows of its order", async () => {
+      const table = page.locator("table.folded").first();
+      if ((await table.count()) === 0) return;
+      const head = table.locator("thead th[data-name=Mean]");
+      await head.locator("button").click();
+      const [shown, hidden] = await table.evaluate((element) => {
+        const column = [...element.tHead.rows[0].cells].findIndex((cell) => cell.dataset.name === "Mean");
+        const rows = [...element.tBodies[0].rows].filter((row) => !row.matches(".chosen")); // that one shows anywhere
+        const values = (isShown) => rows.filter((row) => (row.offsetParent !== null) === isShown)
+          .map((row) => parseFloat(row.cells[column].textContent.replace(/[\s\u202f]/g, "")));
+        return [values(true), values(false)];
+      });
+      assert.ok(shown.length > 5 && hidden.length > 0);
+      const isDown = (await head.getAttribute("aria-sort")) === "descending";
+      assert.ok(isDown ? Math.min(...shown) >= Math.max(...hidden) : Math.max(...shown) <= Math.min(...hidden));
+    });
+
+    await step("the building in 3D turns and comes closer by keys", async () => {
+      if (!html.includes('id="mesh-data"')) return;
+      const canvas = page.locator("#viewer canvas");
+      await canvas.scrollIntoViewIfNeeded();
+      for (const key of ["ArrowLeft", "ArrowDown", "+"]) {
+        const before = await canvas.screenshot();
+        await canvas.press(key);
+        await page.waitForTimeout(300);
+        assert.notDeepEqual(await canvas.screenshot(), before, key);
+      }
+      await page.locator('[data-viewer="reset"]').click();
+    });
+
     await step("the building in 3D cuts, colours and is walked through", async () => {
       if (!html.includes('id="mesh-data"')) return;
       const canvas = page.locator("#viewer canvas");

@@ -110,6 +110,46 @@ TEST(Page, ShowsEverySensorRoomAndView) {
   }
 }
 
+/// The page up to its first section: what a reader sees before scrolling.
+std::string firstScreenOf(const fake::Case& made) {
+  const std::string html = withoutPictures(page(made));
+  return html.substr(0, html.find("<section"));
+}
+
+// 60 of 100 sensors have 5 % and 35 have 2 % of 10,000 lx. For 16,000 lx the norm asks 1.875 % and 0.625 %
+// (minimum), 3.125 % and 1.875 % (medium), 4.6875 % and 3.125 % (high).
+TEST(Page, FirstScreenJudgesTheOneGrid) {
+  fake::Case made = fake::office();
+  made.study.sky = {};
+  made.study.sky.cieType = 16;
+  made.study.sky.diffuseHorizontal_lx = 10000.0;
+  made.study.site.externalDiffuse_lx = 16000.0;
+  made.building.grids.resize(1);
+  made.solution.grids.resize(1);
+  made.building.grids[0].points.assign(100, glm::dvec3(0.0));
+  made.building.grids[0].normals.assign(100, glm::dvec3(0.0, 0.0, 1.0));
+  std::vector<SensorValue>& sensors = made.solution.grids[0].sensors;
+  sensors.assign(100, {});
+  for (std::size_t i = 0; i < 100; ++i)
+    sensors[i].illuminance_lx = sensors[i].sky_lx = i < 60 ? 500.0 : i < 95 ? 200.0 : 20.0;
+  const std::string first = firstScreenOf(made);
+  for (const char* text :
+       {"met, medium", "3.1\u00a0% on half of the area (here on 60\u00a0%)",
+        "1.9\u00a0% on 95\u00a0% of it (here on 95\u00a0%)", "<dt>Mean illuminance</dt><dd>371 ",
+        "<dt>Minimum illuminance</dt><dd>20 ", "<dd>0.05</dd>"}) {
+    EXPECT_NE(first.find(text), std::string::npos) << text;
+  }
+}
+
+TEST(Page, FirstScreenSaysWhyNothingIsJudged) {
+  fake::Case made = fake::office();
+  made.study.sky = {};
+  made.study.sky.cieType = 12;
+  made.study.sky.sun_deg = glm::dvec2(40.0, 180.0);
+  EXPECT_NE(firstScreenOf(made).find("is not judged: its daylight factors are those of an overcast sky"),
+            std::string::npos);
+}
+
 // Of five volumes of air two were solved, one with a room is lit but asked for by nothing, two are dark.
 TEST(Page, TellsWhatWasModelledAndWhatWasNot) {
   fake::Case made = fake::office();
