@@ -293,11 +293,14 @@ void drawText(std::uint8_t* rgb, int width, int height, int x, int y, const std:
 #endif
 
 extern "C" CLERESTORY_EXPORT const clerestory::PictureFiles* clerestoryPictureFiles() {
-  // Its pools of threads gain nothing on pictures of our size, and end the program where no thread is to be
-  // had.
-  OIIO::attribute("threads", 1);
-  OIIO::attribute("exr_threads", -1);
-  static const clerestory::PictureFiles files{clerestory::read, clerestory::writeFloats,
-                                              clerestory::writeBytes, clerestory::drawText};
+  // Once: files are written by several threads, and a pool may be resized by one alone.
+  static const clerestory::PictureFiles files = [] {
+    // Its pools of threads gain nothing on pictures of our size, and end the program where no thread is to be
+    // had.
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", -1);
+    return clerestory::PictureFiles{clerestory::read, clerestory::writeFloats, clerestory::writeBytes,
+                                    clerestory::drawText};
+  }();
   return &files;
 }
