@@ -105,7 +105,8 @@ SolvedDomain<K> plainDomain(const SolvedLight<K>& light, std::int32_t domain, Hi
 }
 
 /// Rooms of a domain but for those that importance leaves out, 1 at least. What one interaction may err by is
-/// a share of all light in the domain; of twelve rooms that is twelve times as much to each of them.
+/// a share of all light in the domain; of twelve rooms that is twelve times as much to each of them. Outdoors
+/// nothing may weigh anything: where nobody looks.
 double roomsAsked(const World& world, std::int32_t domain, const Hierarchy& tree) {
   const auto rooms = std::ranges::count(world.building.rooms, domain, &Room::domain);
   double area_m2 = 0.0;
@@ -118,6 +119,7 @@ double roomsAsked(const World& world, std::int32_t domain, const Hierarchy& tree
     weight_m2 += asked_m2;
     squares_m2 += asked_m2 * asked_m2 / own_m2;
   }
+  if (!(squares_m2 > 0.0)) return 1.0;
   const double share = weight_m2 * weight_m2 / (area_m2 * squares_m2);
   return std::max(share * static_cast<double>(rooms), 1.0);
 }
@@ -155,7 +157,8 @@ void solveDomains(const World& world, const Study& study, const SolveOptions& op
                                           importanceOf(world, study, domain, sides));
     const double rooms = roomsAsked(world, domain, tree);
     SolvedDomain<K> solved = solveDomain(light, domain, std::move(tree), options, tuning, rooms);
-    // Half of the rooms' power is in the threshold; the rest, as errors add up, is left to be stated.
+    // The threshold falls with the root of the rooms, so the error of each still grows with their number,
+    // slowly: the power was calibrated on the floor of twelve offices (docs/validation.md).
     solved.radiosity.solverError = tuning.solverError * std::pow(rooms, 0.125);
     solution.iterations.insert(solution.iterations.end(), solved.statistics.begin(), solved.statistics.end());
     if (!air.open) solution.balances.push_back(solved.balance);

@@ -45,5 +45,18 @@ TEST(Asked, AllRoomsAreWhereNoSensorIs) {
   EXPECT_EQ(roomsOf(rowOfTwo(0)), (std::set<std::int32_t>{0, 1}));
 }
 
+// From far off nobody looks at the house, so none of its outside weighs anything. The sensor and what is
+// stated of its error are still sound.
+TEST(Asked, NothingOutdoorsIsLookedAt) {
+  Drawing drawing;
+  addRoomWithPane(drawing, {0, 0, 0}, {4, 6, 3}, {1, 0.8, 3, 2.2});
+  Study study;
+  study.grids = {gridOf({{2000, 2000, 1}})};
+  const Solved far = solved(drawing.scene, study);
+  const SensorValue& sensor = far.solution.grids.at(0).sensors.at(0);
+  EXPECT_NEAR(sensor.illuminance_lx, study.sky.diffuseHorizontal_lx, 0.01 * study.sky.diffuseHorizontal_lx);
+  EXPECT_LE(sensor.error_lx, 0.1 * sensor.illuminance_lx);  // false for what is no number
+}
+
 }  // namespace
 }  // namespace clerestory
