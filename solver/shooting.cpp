@@ -97,11 +97,10 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
       if (!tree.isLeaf(node)) continue;
       const Columns<K>& next = transport.received()[node].irradiance_lx;
       sum[node] += next;
-      unshot[node] = solved.reflected(node, next);
+      unshot[node] = step == 1 ? solved.sentOn(node, next) : solved.reflected(node, next);
       if (step > 1) continue;
-      const Columns<K> mirrored = unshot[node] - solved.sentOn(node, next);
-      unshot[node] = unshot[node] - mirrored;
-      // Its receivers' light is among what entered.
+      // What was mirrored is its receivers' already, among what entered.
+      const Columns<K> mirrored = solved.reflected(node, next) - unshot[node];
       solved.balance.emitted_lm -=
           static_cast<double>(tree.area_m2[node]) * luminanceOf(world.layout.totalColour(mirrored));
     }
