@@ -15,6 +15,7 @@
 
 #include "../import/tempfolder.hpp"
 #include "../scenes.hpp"
+#include "asgltf.hpp"
 
 namespace clerestory::drawn {
 
@@ -176,42 +177,56 @@ inline std::vector<RoomFigures> roomsOf(const Building& building) {
   return rooms;
 }
 
-/// How far a model may differ from itself where corners of two things lie within a millimetre of each other,
-/// and nothing but their places tells which gives way.
-struct Likeness {
-  double floors = 1e-6;
-  std::size_t otherSurfaces = 0;  ///< that differ by more than 1e-6, up to 1e-3
-  double volumes = 1e-6;          ///< more where furniture or a slope is sampled
-};
-
-inline void expectSameSurfaces(const Surfaces& found_m2, const Surfaces& expected_m2,
-                               const Likeness& likeness) {
-  ASSERT_EQ(found_m2.size(), expected_m2.size());
-  std::size_t others = 0;
+inline void expectSameSurfaces(const Surfaces& found_m2, const Surfaces& expected_m2, double tolerance) {
+  EXPECT_EQ(found_m2.size(), expected_m2.size());
   for (const auto& [surface, area_m2] : expected_m2) {
-    ASSERT_TRUE(found_m2.contains(surface)) << surface.first;
-    const double error = std::abs(found_m2.at(surface) / area_m2 - 1.0);
-    EXPECT_LT(error, 1e-3) << surface.first << ' ' << surface.second;
-    others += error > 1e-6 ? 1 : 0;
+    ASSERT_TRUE(found_m2.contains(surface)) << surface.first << ' ' << surface.second;
+    EXPECT_NEAR(found_m2.at(surface) / area_m2, 1.0, tolerance) << surface.first << ' ' << surface.second;
   }
-  EXPECT_LE(others, likeness.otherSurfaces);
 }
 
-inline void expectSame(const Scene& other, const Building& expected, const Likeness& likeness = {}) {
+inline void expectSame(const Scene& other, const Building& expected) {
+  constexpr double same = 1e-6;
   const Building found = buildingOf(other);
-  expectSameSurfaces(surfacesOf(found.model), surfacesOf(expected.model), likeness);
+  expectSameSurfaces(surfacesOf(found.model), surfacesOf(expected.model), same);
   const std::vector<RoomFigures> rooms = roomsOf(found);
   const std::vector<RoomFigures> expectedRooms = roomsOf(expected);
   ASSERT_EQ(rooms.size(), expectedRooms.size());
   for (std::size_t room = 0; room < rooms.size(); ++room) {
-    EXPECT_NEAR(rooms[room][0] / expectedRooms[room][0], 1.0, likeness.floors);
+    EXPECT_NEAR(rooms[room][0] / expectedRooms[room][0], 1.0, same) << "floor of room " << room;
     EXPECT_EQ(rooms[room][1], expectedRooms[room][1]);
-    EXPECT_NEAR(rooms[room][2], expectedRooms[room][2], 1e-6 * expectedRooms[room][2]);
-    EXPECT_NEAR(rooms[room][3] / expectedRooms[room][3], 1.0, likeness.volumes);
+    EXPECT_NEAR(rooms[room][2], expectedRooms[room][2], same * expectedRooms[room][2]);
+    EXPECT_NEAR(rooms[room][3] / expectedRooms[room][3], 1.0, same) << "volume of room " << room;
   }
 }
 
-inline void expectSameHoweverDrawn(const std::filesystem::path& file, const Likeness& likeness = {}) {
+inline Scene asGltf(const Scene& scene) {
+  const TempFolder folder;
+  return read(folder.write("model.glb", glbOf(scene)));
+}
+
+/// Faces as the triangles that a glTF holds: that those of a slightly warped one were one it does not tell.
+inline Scene inTriangles(const Scene& scene) {
+  return withFaces(scene, [&](Scene& result, std::span<const std::uint32_t> c, const auto& add) {
+    const std::vector<std::uint32_t> triangles = trianglesOf(result, c);
+    for (std::size_t i = 0; i < triangles.size(); i += 3)
+      add({triangles[i], triangles[i + 1], triangles[i + 2]});
+  });
+}
+
+/// With as many digits as a glTF holds.
+inline Scene inFloats(const Scene& scene) {
+  const auto decimalOf = [](double value) {
+    char text[32];
+    const char* end = std::to_chars(text, text + sizeof text, static_cast<float>(value)).ptr;
+    std::from_chars(text, end, value);
+    return value;
+  };
+  return moved(
+      scene, [&](const glm::dvec3& p) { return glm::dvec3(decimalOf(p.x), decimalOf(p.y), decimalOf(p.z)); });
+}
+
+inline void expectSameHoweverDrawn(const std::filesystem::path& file) {
   const Scene scene = read(file);
   const Building expected = buildingOf(scene);
   ASSERT_FALSE(expected.rooms.empty());
@@ -226,8 +241,10 @@ inline void expectSameHoweverDrawn(const std::filesystem::path& file, const Like
       {"divided", divided(scene)}};
   for (const auto& [how, other] : others) {
     SCOPED_TRACE(how);
-    expectSame(other, expected, likeness);
+    expectSame(other, expected);
   }
+  SCOPED_TRACE("as glTF");
+  expectSame(asGltf(scene), buildingOf(inFloats(inTriangles(scene))));
 }
 
 }  // namespace clerestory::drawn
