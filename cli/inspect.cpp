@@ -204,9 +204,10 @@ Json inspectionJson(const Building& building, const DrawnFaults& faults, const T
   }
   json["openings"] = Json::array();
   for (const RoomBorder& border : building.borders) {
+    Json line = Json::array();
+    for (const glm::dvec3& place : border.line_m) line.push_back(vectorJson(place));
     json["openings"].push_back({{"rooms", {border.rooms[0], border.rooms[1]}},
-                                {"from_m", vectorJson(border.from_m)},
-                                {"to_m", vectorJson(border.to_m)},
+                                {"line_m", std::move(line)},
                                 {"height_m", border.height_m}});
   }
   json["diagnoses"] = Json::array();

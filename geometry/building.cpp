@@ -42,10 +42,8 @@ void cutAtCrossings(Building& building) {
 /// Turns what findings of a building have for places out of the frame, in which it was looked at.
 void turnOutOf(const PlanFrame& frame, Building& building) {
   turnOutOf(frame, building.model.pieces);
-  for (RoomBorder& border : building.borders) {
-    border.from_m = outOfFrame(frame, border.from_m);
-    border.to_m = outOfFrame(frame, border.to_m);
-  }
+  for (RoomBorder& border : building.borders)
+    for (glm::dvec3& place : border.line_m) place = outOfFrame(frame, place);
   for (Diagnosis& diagnosis : building.diagnoses)
     if (diagnosis.place_m) diagnosis.place_m = outOfFrame(frame, *diagnosis.place_m);
   for (Mark& mark : building.marks) mark.place_m = outOfFrame(frame, mark.place_m);

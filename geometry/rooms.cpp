@@ -233,7 +233,10 @@ void addBorders(Building& building, const std::vector<Draft>& drafts, const std:
         const auto b = roomOf.find({&air, s, doorway.regions[1]});
         if (a == roomOf.end() || b == roomOf.end()) continue;
         const auto [low, high] = std::minmax(a->second, b->second);
-        building.borders.push_back({{low, high}, doorway.from_m, doorway.to_m, doorway.height_m});
+        RoomBorder& border = building.borders.emplace_back();
+        border = {{low, high}, {doorway.from_m}, doorway.height_m};
+        border.line_m.insert(border.line_m.end(), doorway.bends_m.begin(), doorway.bends_m.end());
+        border.line_m.push_back(doorway.to_m);
       }
     }
   }

@@ -107,7 +107,7 @@ struct Room {
 /// belongs to neither and both; light passes freely.
 struct RoomBorder {
   std::array<std::int32_t, 2> rooms;
-  glm::dvec3 from_m, to_m;  ///< at the floor
+  std::vector<glm::dvec3> line_m;  ///< at the floor: its ends, and corners where floors alone tell
   double height_m;
 };
 
