@@ -184,7 +184,8 @@ void cutAtPanes(Pieces& pieces, const std::vector<Material>& materials) {
   });
 }
 
-std::vector<std::uint32_t> cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs) {
+std::vector<std::uint32_t> cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs,
+                                       const std::vector<bool>& partAirs) {
   std::vector<Cutter> all;
   for (std::uint32_t piece = 0; piece < pieces.size(); ++piece)
     all.push_back(cutterOf(pieces, piece, wallReach_m));
@@ -195,7 +196,7 @@ std::vector<std::uint32_t> cutWhereMet(Pieces& pieces, const std::vector<bool>& 
       const bool apart = glm::any(glm::lessThan(all[other].high, all[piece].low)) ||
                          glm::any(glm::lessThan(all[piece].high, all[other].low));
       const bool isParallel = std::abs(glm::dot(all[other].normal, all[piece].normal)) > 0.999;
-      if (other != piece && !apart && !isParallel) cutters.push_back(&all[other]);
+      if (other != piece && partAirs[other] && !apart && !isParallel) cutters.push_back(&all[other]);
     }
     return cutters;
   });

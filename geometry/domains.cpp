@@ -59,6 +59,20 @@ std::vector<bool> piecesInTwoAirs(const CleanModel& model, const AirSurvey& surv
   return inTwoAirs;
 }
 
+/// Pieces with another air on either side, at which others are cut: walls and columns, but not the legs of
+/// chairs, whose insides are too small to be airs.
+std::vector<bool> piecesBetweenAirs(const CleanModel& model, const AirSurvey& survey) {
+  constexpr double solidLeast_m2 = 0.05;  // of one that is too thin for air between its sheets
+  std::vector<bool> partAirs(model.pieces.size());
+  for (std::uint32_t piece = 0; piece < model.pieces.size(); ++piece) {
+    const std::uint32_t front = survey.airOf(2 * piece);
+    const std::uint32_t back = survey.airOf(2 * piece + 1);
+    const bool isSolid = front == nowhere || back == nowhere;
+    partAirs[piece] = !isSolid ? front != back : model.pieces.area_m2[piece] >= solidLeast_m2;
+  }
+  return partAirs;
+}
+
 }  // namespace
 
 void findDomains(Building& building) {
@@ -69,7 +83,8 @@ void findDomains(Building& building) {
   const std::vector<bool> inTwoAirs = piecesInTwoAirs(model, *survey);
   if (std::find(inTwoAirs.begin(), inTwoAirs.end(), true) != inTwoAirs.end()) {
     const std::size_t piecesBefore = model.pieces.size();
-    const SameSides same(cutWhereMet(model.pieces, inTwoAirs), piecesBefore);
+    const SameSides same(cutWhereMet(model.pieces, inTwoAirs, piecesBetweenAirs(model, *survey)),
+                         piecesBefore);
     cut.emplace(model, std::vector<bool>());
     survey = std::make_unique<AirSurvey>(model, *cut, *survey, same);
   }
