@@ -9,7 +9,7 @@
 
 #include <geometry/faults.hpp>
 
-#include "redrawn.hpp"
+#include "howeverdrawn.hpp"
 
 namespace clerestory {
 namespace {

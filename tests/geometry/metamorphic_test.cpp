@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The sample office drawn in other ways.
-#include "redrawn.hpp"
+#include "howeverdrawn.hpp"
 
 namespace clerestory {
 namespace {
