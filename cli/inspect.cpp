@@ -204,9 +204,10 @@ Json inspectionJson(const Building& building, const DrawnFaults& faults, const T
   }
   json["openings"] = Json::array();
   for (const RoomBorder& border : building.borders) {
+    Json line = Json::array();
+    for (const glm::dvec3& place : border.line_m) line.push_back(vectorJson(place));
     json["openings"].push_back({{"rooms", {border.rooms[0], border.rooms[1]}},
-                                {"from_m", vectorJson(border.from_m)},
-                                {"to_m", vectorJson(border.to_m)},
+                                {"line_m", std::move(line)},
                                 {"height_m", border.height_m}});
   }
   json["diagnoses"] = Json::array();
@@ -301,14 +302,17 @@ std::string roomsIn(const Building& building, std::size_t domain) {
 
 std::string airText(const Building& building) {
   TextTable table({"air", "surface m2", "rooms in it"});
-  std::size_t dark = 0;
-  double dark_m2 = 0.0;
+  std::size_t hollows = 0;
+  double hollows_m2 = 0.0;
   for (std::size_t i = 0; i < building.domains.size(); ++i) {
     const Domain& domain = building.domains[i];
     const std::string rooms = roomsIn(building, i);
-    if (!domain.lit && rooms.empty()) {
-      ++dark;
-      dark_m2 += domain.area_m2;
+    const bool hasPane =
+        std::any_of(building.portals.begin(), building.portals.end(),
+                    [&](const Portal& pane) { return pane.inside == static_cast<std::int32_t>(i); });
+    if (!domain.open && !hasPane && rooms.empty()) {
+      ++hollows;
+      hollows_m2 += domain.area_m2;
       continue;
     }
     table.add({domain.open  ? "open to the sky"
@@ -316,10 +320,11 @@ std::string airText(const Building& building) {
                             : "closed, dark",
                number(domain.area_m2, 2), rooms});
   }
-  // Hollows of walls and furniture come by the hundred.
-  if (dark > 0)
-    table.add(
-        {std::to_string(dark) + (dark == 1 ? " dark hollow" : " dark hollows"), number(dark_m2, 2), ""});
+  // Those of walls, ceilings and furniture come by the hundred.
+  if (hollows > 0) {
+    table.add({std::to_string(hollows) + (hollows == 1 ? " hollow" : " hollows") + " without room or pane",
+               number(hollows_m2, 2), ""});
+  }
   return table.text();
 }
 

@@ -150,8 +150,9 @@ std::string panesSvg(const Building& building, const Sheet& sheet) {
   }
   for (const RoomBorder& border : building.borders) {
     const auto a = static_cast<std::size_t>(border.rooms[0]);
-    if (std::find(sheet.rooms.begin(), sheet.rooms.end(), a) != sheet.rooms.end())
-      svg += sheet.line("border", border.from_m, border.to_m);
+    if (std::find(sheet.rooms.begin(), sheet.rooms.end(), a) == sheet.rooms.end()) continue;
+    for (std::size_t i = 1; i < border.line_m.size(); ++i)
+      svg += sheet.line("border", border.line_m[i - 1], border.line_m[i]);
   }
   return svg;
 }

@@ -45,9 +45,16 @@ TEST(Clean, DropsFacesDrawnTwice) {
   Outline back(square.rbegin(), square.rend());
   Drawing same;
   same.face(square);
-  same.face(back, 0, 1);
+  same.face(back);
   EXPECT_EQ(cleanScene(same.scene).pieces.size(), 1U);
   EXPECT_EQ(cleanScene(same.scene).counts.duplicateFaces, 1U);
+
+  Drawing ofTwoObjects;  // each has a side
+  ofTwoObjects.face(square);
+  ofTwoObjects.face(back, 0, 1);
+  EXPECT_EQ(cleanScene(ofTwoObjects.scene).pieces.size(), 2U);
+  ofTwoObjects.face(square);
+  EXPECT_EQ(cleanScene(ofTwoObjects.scene).pieces.size(), 2U);
 
   Drawing twoSided;  // another material on its other side
   twoSided.face(square);
@@ -123,13 +130,13 @@ TEST(Clean, TriangulatedCubeIsTheCube) {
   }
 }
 
-TEST(Clean, NormalsFollowTheDrawnWinding) {
+TEST(Clean, KeepsTheSideThatAFaceIsDrawnFor) {
   Drawing drawing;
   for (const Outline& side : box({0, 0, 0}, {1, 1, 1})) drawing.fan(side);
   const CleanModel model = cleanScene(drawing.scene);
   for (std::size_t i = 0; i < model.pieces.size(); ++i) {
     const glm::dvec3 out = model.pieces.points[model.pieces.polygons[i][0]] - glm::dvec3(0.5);
-    EXPECT_GT(glm::dot(out, model.pieces.normal[i]), 0.0);
+    EXPECT_GT(glm::dot(out, drawnNormal(model, i)), 0.0);
   }
 }
 

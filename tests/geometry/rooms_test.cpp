@@ -65,9 +65,10 @@ TEST(Rooms, PartAtADoor) {
     }
     EXPECT_NEAR(floor_m2, 24.18, 1e-6);
     ASSERT_EQ(building.borders.size(), 1U);
-    EXPECT_NEAR(building.borders[0].from_m.x, 4.1, 1e-6);
-    EXPECT_NEAR(building.borders[0].to_m.x, 4.1, 1e-6);
-    EXPECT_NEAR(glm::length(building.borders[0].to_m - building.borders[0].from_m), 0.9, 1e-6);
+    const std::vector<glm::dvec3>& line_m = building.borders[0].line_m;
+    ASSERT_EQ(line_m.size(), 2U);
+    for (const glm::dvec3& end : line_m) EXPECT_NEAR(end.x, 4.1, 1e-6);
+    EXPECT_NEAR(glm::length(line_m[1] - line_m[0]), 0.9, 1e-6);
     EXPECT_NEAR(building.borders[0].height_m, height_m, 1e-6);
   }
 }
@@ -104,6 +105,27 @@ TEST(Rooms, MeetAtTheEdgesOfTheirFloors) {
     EXPECT_NEAR(areas_m2[0], 1.9 * 1.8 - 0.06, 1e-6);
     EXPECT_NEAR(areas_m2[1], 4.1 * 1.8 - 0.06 - 0.155, 1e-6);
     EXPECT_NEAR(areas_m2[2], 6 * 2.2 - 0.155, 1e-6);
+  }
+}
+
+// A border round a kitchen's open corner is a line with a bend, to a cell of 5 cm.
+TEST(Rooms, BorderOfFloorsGoesRoundACorner) {
+  Drawing drawing;
+  addBox(drawing, {0, 0, 0}, {6, 4, 2.7}, plaster, 0, {0});
+  const std::uint32_t kitchen = addObject(drawing, "kitchen");
+  const std::uint32_t hall = addObject(drawing, "hall");
+  drawing.face({{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}}, wood, kitchen);
+  drawing.face({{3, 0, 0}, {6, 0, 0}, {6, 4, 0}, {0, 4, 0}, {0, 2, 0}, {3, 2, 0}}, wood, hall);
+  addBox(drawing, {2.95, 0, 0}, {3.05, 1.2, 2.7}, plaster, 0, {0, 1});
+  addBox(drawing, {0, 1.95, 0}, {2.2, 2.05, 2.7}, plaster, 0, {0, 1});
+  for (const Scene& scene : {drawing.scene, mirrored(drawing.scene)}) {
+    const Building building = buildingOf(scene);
+    EXPECT_EQ(building.rooms.size(), 2U);
+    ASSERT_EQ(building.borders.size(), 1U);
+    const std::vector<glm::dvec3>& line_m = building.borders[0].line_m;
+    ASSERT_EQ(line_m.size(), 3U);
+    EXPECT_NEAR(std::abs(line_m[1].x), 3.0, 0.06);
+    EXPECT_NEAR(line_m[1].y, 2.0, 0.06);
   }
 }
 

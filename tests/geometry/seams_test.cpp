@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Edges along which several faces meet, and faces back to back over a part of each.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include <geometry/faults.hpp>
+
+#include "redrawn.hpp"
+
+namespace clerestory {
+namespace {
+
+using namespace drawn;
+
+// Four walls meet along one edge, and each meets floor, ceiling and another wall along edges of more than two
+// faces. Nobody splits them: pieces have sides of their own, and each side has the air before it.
+TEST(Seams, EdgesOfManyFacesPartTheRoomsAroundThem) {
+  Drawing drawing;
+  addBox(drawing, {0, 0, 0}, {4, 4, 3});
+  const auto wall = [&](const glm::dvec2& a, const glm::dvec2& b) {
+    drawing.face({{a, 0}, {b, 0}, {b, 3}, {a, 3}}, wood, 1);
+  };
+  for (const glm::dvec2& end : {glm::dvec2(0, 2), glm::dvec2(4, 2), glm::dvec2(2, 0), glm::dvec2(2, 4)})
+    wall({2, 2}, end);
+  EXPECT_GT(countFaults(drawing.scene).nonManifoldEdges, 0U);
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 4U);
+  for (const Room& room : building.rooms) {
+    EXPECT_NEAR(room.floorArea_m2, 4.0, 1e-9);
+    EXPECT_NEAR(building.domains[static_cast<std::size_t>(room.domain)].area_m2, 32.0, 1e-9);
+  }
+  for (const std::int32_t domain : building.sideDomain) EXPECT_GE(domain, 0);
+}
+
+/// A room that looks out through its whole south side; its other faces are one object's.
+void addLitRoom(Drawing& drawing, const glm::dvec3& a, const glm::dvec3& b, std::uint32_t material,
+                std::uint32_t object) {
+  addBox(drawing, a, b, material, object, {2});
+  drawing.face(upright(a.x, a.z, b.x, b.z, a.y), glass);
+}
+
+/// By domain: what it sees in the plane z = 3, by object. [m²]
+std::map<std::int32_t, std::map<std::string, double>> seenAtThreeMetres(const Building& building) {
+  const Pieces& pieces = building.model.pieces;
+  std::map<std::int32_t, std::map<std::string, double>> seen_m2;
+  for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
+    const std::uint32_t piece = side / 2;
+    const double off_m = pieces.points[pieces.polygons[piece][0]].z - 3.0;
+    if (building.sideDomain[side] < 0 || std::abs(off_m) > 0.01 || std::abs(pieces.normal[piece].z) < 0.9)
+      continue;
+    seen_m2[building.sideDomain[side]][building.model.surfaces[pieces.surface[piece]].name] +=
+        pieces.area_m2[piece];
+  }
+  return seen_m2;
+}
+
+// A room over parts of two others, each drawn with a floor and a ceiling of its own: each side has its own
+// name where both lie, also where all is of one material, whichever way all faces look.
+TEST(Seams, FacesBackToBackOverAPartKeepTheirSides) {
+  for (const std::uint32_t upper : {wood, plaster}) {
+    for (const bool looksIn : {false, true}) {
+      SCOPED_TRACE(testing::Message() << "material " << upper << (looksIn ? ", inwards" : ", outwards"));
+      Drawing drawing;
+      addLitRoom(drawing, {0, 0, 0}, {4, 3, 3}, plaster, addObject(drawing, "west"));
+      addLitRoom(drawing, {4, 0, 0}, {10, 3, 3}, plaster, addObject(drawing, "east"));
+      addLitRoom(drawing, {1, 0, 3}, {8, 3, 6}, upper, addObject(drawing, "upper"));
+      const Building building = buildingOf(looksIn ? reversed(drawing.scene) : drawing.scene);
+      ASSERT_EQ(building.rooms.size(), 3U);
+      auto seen_m2 = seenAtThreeMetres(building);
+      std::map<std::string, double> own_m2;
+      for (const Room& room : building.rooms) {
+        auto& here_m2 = seen_m2[room.domain];
+        ASSERT_EQ(here_m2.size(), 1U);
+        own_m2[here_m2.begin()->first] = here_m2.begin()->second;
+      }
+      EXPECT_NEAR(own_m2["west"], 12.0, 1e-9);
+      EXPECT_NEAR(own_m2["east"], 18.0, 1e-9);
+      EXPECT_NEAR(own_m2["upper"], 21.0, 1e-9);
+      EXPECT_NEAR(seen_m2[0]["west"], 3.0, 1e-9);  // their roofs beside it
+      EXPECT_NEAR(seen_m2[0]["east"], 6.0, 1e-9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clerestory
