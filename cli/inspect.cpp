@@ -12,6 +12,7 @@
 #include <iomanip>
 #include <memory>
 #include <numeric>
+#include <set>
 #include <sstream>
 #include <system_error>
 
@@ -35,6 +36,7 @@ struct Totals {
   glm::dvec3 lowest{0.0}, highest{0.0};
   std::vector<double> materialArea_m2;  ///< #materials, one side of each piece
   double portalArea_m2 = 0.0;
+  double otherGlazing_m2 = 0.0;  ///< that is no window
 };
 
 Totals totalsOf(const Building& building) {
@@ -53,6 +55,9 @@ Totals totalsOf(const Building& building) {
   }
   for (const Portal& portal : building.portals) {
     totals.portalArea_m2 += pieces.area_m2[portal.piece];
+  }
+  for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
+    if (building.innerGlass[piece]) totals.otherGlazing_m2 += pieces.area_m2[piece];
   }
   return totals;
 }
@@ -188,7 +193,9 @@ Json inspectionJson(const Building& building, const DrawnFaults& faults, const T
   for (const Domain& domain : building.domains) {
     json["domains"].push_back({{"open", domain.open}, {"lit", domain.lit}, {"area_m2", domain.area_m2}});
   }
-  json["portals"] = {{"count", building.portals.size()}, {"area_m2", totals.portalArea_m2}};
+  json["portals"] = {{"count", building.portals.size()},
+                     {"area_m2", totals.portalArea_m2},
+                     {"other_glazing_m2", totals.otherGlazing_m2}};
   json["rooms"] = Json::array();
   for (std::size_t i = 0; i < building.rooms.size(); ++i) {
     const Room& room = building.rooms[i];
@@ -269,6 +276,16 @@ std::string materialsText(const Building& building, const Totals& totals) {
   return table.text();
 }
 
+/// Rooms that a room opens to, each once.
+std::set<std::int32_t> neighboursOf(const Building& building, std::int32_t room) {
+  std::set<std::int32_t> neighbours;
+  for (const RoomBorder& border : building.borders) {
+    if (border.rooms[0] == room) neighbours.insert(border.rooms[1]);
+    if (border.rooms[1] == room) neighbours.insert(border.rooms[0]);
+  }
+  return neighbours;
+}
+
 std::string roomsText(const Building& building) {
   TextTable table(
       {"room", "floor m2", "volume m3", "floor at m", "ceiling at m", "panes", "panes m2", "opens to"});
@@ -276,12 +293,9 @@ std::string roomsText(const Building& building) {
     const Room& room = building.rooms[i];
     const RoomWindows windows = windowsOf(building, static_cast<std::int32_t>(i));
     std::string opensTo;
-    for (const RoomBorder& border : building.borders) {
-      for (const int end : {0, 1}) {
-        if (border.rooms[end] != static_cast<std::int32_t>(i)) continue;
-        opensTo += (opensTo.empty() ? "" : ", ") +
-                   printable(building.rooms[static_cast<std::size_t>(border.rooms[1 - end])].name);
-      }
+    for (const std::int32_t other : neighboursOf(building, static_cast<std::int32_t>(i))) {
+      opensTo +=
+          (opensTo.empty() ? "" : ", ") + printable(building.rooms[static_cast<std::size_t>(other)].name);
     }
     table.add({printable(room.name), number(room.floorArea_m2, 2), number(room.volume_m3, 2),
                number(room.floor_m, 2), number(room.ceiling_m, 2), std::to_string(windows.panes),
@@ -368,7 +382,13 @@ std::string inspectionText(const Study& study, const Building& building, const D
           "; up: " + axes.upAxis + (axes.upAxisIsGuessed ? " (guessed; --up states it)" : "") + '\n';
   text += "\nRooms\n" + roomsText(building);
   text += "\nWindows: " + std::to_string(building.portals.size()) +
-          (building.portals.size() == 1 ? " pane, " : " panes, ") + number(totals.portalArea_m2, 2) + " m2\n";
+          (building.portals.size() == 1 ? " pane, " : " panes, ") + number(totals.portalArea_m2, 2) + " m2";
+  constexpr double leastTold_m2 = 0.01;
+  if (totals.otherGlazing_m2 >= leastTold_m2) {
+    text += "; glazing that is no window (within the building, outdoors or covered): " +
+            number(totals.otherGlazing_m2, 2) + " m2";
+  }
+  text += '\n';
   text += warningsText(diagnoses);
   text += "\nMaterials\n" + materialsText(building, totals);
   text += "\nAir that is connected without crossing glass\n" + airText(building);
