@@ -2,7 +2,7 @@
 // Clean-up of single faces, and the canonical result that does not depend on how a model was written.
 #include <gtest/gtest.h>
 
-#include "drawn.hpp"
+#include "redrawn.hpp"
 
 namespace clerestory {
 namespace {
@@ -132,11 +132,24 @@ TEST(Clean, TriangulatedCubeIsTheCube) {
 
 TEST(Clean, KeepsTheSideThatAFaceIsDrawnFor) {
   Drawing drawing;
-  for (const Outline& side : box({0, 0, 0}, {1, 1, 1})) drawing.fan(side);
-  const CleanModel model = cleanScene(drawing.scene);
-  for (std::size_t i = 0; i < model.pieces.size(); ++i) {
-    const glm::dvec3 out = model.pieces.points[model.pieces.polygons[i][0]] - glm::dvec3(0.5);
-    EXPECT_GT(glm::dot(out, drawnNormal(model, i)), 0.0);
+  const std::vector<glm::dvec2> plan{{-0.5, -0.3}, {1.5, -0.3}, {-0.5, 0.7}};  // the same from no two sides
+  Outline bottom;
+  Outline top;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const glm::dvec2& to = plan[(i + 1) % plan.size()];
+    drawing.fan({{plan[i], -0.5}, {to, -0.5}, {to, 0.5}, {plan[i], 0.5}});
+    bottom.insert(bottom.begin(), {plan[i], -0.5});
+    top.emplace_back(plan[i], 0.5);
+  }
+  drawing.face(bottom);
+  drawing.face(top);
+  for (const Scene& scene : {drawing.scene, reversed(mirrored(drawing.scene)), turned(drawing.scene, 2.0)}) {
+    const CleanModel model = cleanScene(scene);
+    EXPECT_EQ(model.pieces.size(), 5U);
+    for (std::size_t i = 0; i < model.pieces.size(); ++i) {
+      const glm::dvec3& out = model.pieces.points[model.pieces.polygons[i][0]];  // from a point within
+      EXPECT_GT(glm::dot(out, drawnNormal(model, i)), 0.0);
+    }
   }
 }
 

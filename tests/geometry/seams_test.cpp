@@ -40,14 +40,14 @@ void addLitRoom(Drawing& drawing, const glm::dvec3& a, const glm::dvec3& b, std:
   drawing.face(upright(a.x, a.z, b.x, b.z, a.y), glass);
 }
 
-/// By domain: what it sees in the plane z = 3, by object. [m²]
-std::map<std::int32_t, std::map<std::string, double>> seenAtThreeMetres(const Building& building) {
+/// By domain: what it sees in the plane three metres along an axis, by object. [m²]
+std::map<std::int32_t, std::map<std::string, double>> seenAtThreeMetres(const Building& building, int axis) {
   const Pieces& pieces = building.model.pieces;
   std::map<std::int32_t, std::map<std::string, double>> seen_m2;
   for (std::uint32_t side = 0; side < building.sideDomain.size(); ++side) {
     const std::uint32_t piece = side / 2;
-    const double off_m = pieces.points[pieces.polygons[piece][0]].z - 3.0;
-    if (building.sideDomain[side] < 0 || std::abs(off_m) > 0.01 || std::abs(pieces.normal[piece].z) < 0.9)
+    const double off_m = pieces.points[pieces.polygons[piece][0]][axis] - 3.0;
+    if (building.sideDomain[side] < 0 || std::abs(off_m) > 0.01 || std::abs(pieces.normal[piece][axis]) < 0.9)
       continue;
     seen_m2[building.sideDomain[side]][building.model.surfaces[pieces.surface[piece]].name] +=
         pieces.area_m2[piece];
@@ -67,7 +67,7 @@ TEST(Seams, FacesBackToBackOverAPartKeepTheirSides) {
       addLitRoom(drawing, {1, 0, 3}, {8, 3, 6}, upper, addObject(drawing, "upper"));
       const Building building = buildingOf(looksIn ? reversed(drawing.scene) : drawing.scene);
       ASSERT_EQ(building.rooms.size(), 3U);
-      auto seen_m2 = seenAtThreeMetres(building);
+      auto seen_m2 = seenAtThreeMetres(building, 2);
       std::map<std::string, double> own_m2;
       for (const Room& room : building.rooms) {
         auto& here_m2 = seen_m2[room.domain];
@@ -79,6 +79,50 @@ TEST(Seams, FacesBackToBackOverAPartKeepTheirSides) {
       EXPECT_NEAR(own_m2["upper"], 21.0, 1e-9);
       EXPECT_NEAR(seen_m2[0]["west"], 3.0, 1e-9);  // their roofs beside it
       EXPECT_NEAR(seen_m2[0]["east"], 6.0, 1e-9);
+    }
+  }
+}
+
+// Two rooms back to back, one of them with a shaft of 0.2 x 0.2 m in its corner, which is too little air for
+// anything to be cut at its walls: the longer wall is the shorter one's partner as far as that goes.
+TEST(Seams, FacesBackToBackKeepTheirSidesBesideAShaft) {
+  for (const std::uint32_t northern : {wood, plaster}) {
+    for (const bool looksIn : {false, true}) {
+      SCOPED_TRACE(testing::Message() << "material " << northern << (looksIn ? ", inwards" : ", outwards"));
+      Drawing drawing;
+      addLitRoom(drawing, {0, 0, 0}, {4, 3, 3}, plaster, addObject(drawing, "south"));
+      const std::uint32_t north = addObject(drawing, "north");
+      const std::vector<glm::dvec2> plan{{0, 3}, {3.8, 3}, {3.8, 3.2}, {4, 3.2}, {4, 6}, {0, 6}};
+      Outline floor;
+      Outline ceiling;
+      for (std::size_t i = 0; i < plan.size(); ++i) {
+        const glm::dvec2& from = plan[i];
+        const glm::dvec2& to = plan[(i + 1) % plan.size()];
+        const Outline wall{{from, 0}, {to, 0}, {to, 3}, {from, 3}};
+        drawing.face(wall, from.y == 6 && to.y == 6 ? glass : northern, north);
+        floor.insert(floor.begin(), {from, 0});
+        ceiling.emplace_back(from, 3);
+      }
+      drawing.face(floor, northern, north);
+      drawing.face(ceiling, northern, north);
+      const std::uint32_t shaft = addObject(drawing, "shaft");
+      drawing.face({{4, 3, 0}, {4, 3.2, 0}, {4, 3.2, 3}, {4, 3, 3}}, plaster, shaft);
+      drawing.face({{3.8, 3, 0}, {3.8, 3.2, 0}, {4, 3.2, 0}, {4, 3, 0}}, plaster, shaft);
+      drawing.face({{3.8, 3, 3}, {4, 3, 3}, {4, 3.2, 3}, {3.8, 3.2, 3}}, plaster, shaft);
+      const Building building = buildingOf(looksIn ? reversed(drawing.scene) : drawing.scene);
+      ASSERT_EQ(building.rooms.size(), 2U);
+      auto seen_m2 = seenAtThreeMetres(building, 1);
+      for (const Room& room : building.rooms) {
+        const bool isNorth = room.floorArea_m2 < 11.99;
+        EXPECT_NEAR(room.floorArea_m2, isNorth ? 12.0 - 0.04 : 12.0, 1e-9);
+        auto& here_m2 = seen_m2[room.domain];
+        EXPECT_NEAR(here_m2["north"], isNorth ? 3.8 * 3.0 : 0.0, 1e-9);
+        if (isNorth) {
+          EXPECT_LE(here_m2["south"], 0.2 * 3.0 + 1e-9);  // the shaft's, which is nobody's room
+        } else {
+          EXPECT_NEAR(here_m2["south"], 12.0, 1e-9);
+        }
+      }
     }
   }
 }
