@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <string>
+
+#include <import/photometry.hpp>
 
 #include "../scenes.hpp"
 
@@ -70,6 +73,41 @@ TEST(Rooms, PartAtADoor) {
     for (const glm::dvec3& end : line_m) EXPECT_NEAR(end.x, 4.1, 1e-6);
     EXPECT_NEAR(glm::length(line_m[1] - line_m[0]), 0.9, 1e-6);
     EXPECT_NEAR(building.borders[0].height_m, height_m, 1e-6);
+  }
+}
+
+// What is found is told in the model's own axes, in which studies speak of places, and not in those that it
+// was looked at in.
+TEST(Rooms, AreToldInTheModelsAxes) {
+  for (const double angle_rad : {0.0, 0.7, 2.4, 4.0}) {
+    for (const bool isMirrored : {false, true}) {
+      SCOPED_TRACE(testing::Message() << angle_rad << " rad" << (isMirrored ? ", mirrored" : ""));
+      const auto placeOf = [&](const glm::dvec3& place) {
+        Scene point;
+        point.points = {place};
+        return turned(isMirrored ? mirrored(point) : point, angle_rad).points[0];
+      };
+      Scene scene = twoRooms(0.9, 2.05).scene;
+      scene = turned(isMirrored ? mirrored(scene) : scene, angle_rad);
+      LuminaireSettings lamp;
+      lamp.photometry = std::make_shared<const Photometry>(lambertianPhotometry(100.0));
+      lamp.position_m = placeOf({6.2, 1.1, 2.5});
+      lamp.aim = placeOf({1, 0, 0});
+      Study study;
+      study.luminaires = {lamp};
+      const Building building = buildingOf(scene, study);
+      ASSERT_EQ(building.luminaires.size(), 1U);
+      EXPECT_LT(glm::length(building.luminaires[0].position_m - lamp.position_m), 1e-12);
+      EXPECT_LT(glm::length(building.luminaires[0].axes[2] + lamp.aim), 1e-12);
+      ASSERT_EQ(building.rooms.size(), 2U);
+      EXPECT_EQ(building.luminaireDomain[0], building.rooms[0].domain);
+      ASSERT_EQ(building.borders.size(), 1U);
+      std::vector<glm::dvec3> line_m = building.borders[0].line_m;
+      ASSERT_EQ(line_m.size(), 2U);
+      if (glm::length(line_m[0] - placeOf({4.1, 1.05, 0})) > 0.1) std::swap(line_m[0], line_m[1]);
+      EXPECT_LT(glm::length(line_m[0] - placeOf({4.1, 1.05, 0})), 1e-6);
+      EXPECT_LT(glm::length(line_m[1] - placeOf({4.1, 1.95, 0})), 1e-6);
+    }
   }
 }
 
