@@ -127,5 +127,53 @@ TEST(Seams, FacesBackToBackKeepTheirSidesBesideAShaft) {
   }
 }
 
+/// Pieces of a level surface at a height.
+std::vector<std::uint32_t> piecesAtHeight(const Building& building, double height_m) {
+  const Pieces& pieces = building.model.pieces;
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t piece = 0; piece < pieces.size(); ++piece) {
+    const double off_m = pieces.points[pieces.polygons[piece][0]].z - height_m;
+    if (std::abs(pieces.normal[piece].z) > 0.9 && std::abs(off_m) < 1e-6) found.push_back(piece);
+  }
+  return found;
+}
+
+// One slab under a wall of two boards, which are too near to each other for air between them.
+TEST(Seams, SlabIsCutUnderAThinWall) {
+  Drawing drawing;
+  addBox(drawing, {0, 0, 0}, {8, 3, 3});
+  addBox(drawing, {4, 0, 0}, {4.01, 3, 3}, wood, 1, {0, 1});
+  const Building building = buildingOf(drawing.scene);
+  ASSERT_EQ(building.rooms.size(), 2U);
+  const Pieces& pieces = building.model.pieces;
+  for (const std::uint32_t piece : piecesAtHeight(building, 0.0)) {
+    const auto isWest = [&](std::uint32_t corner) { return pieces.points[corner].x < 4.005; };
+    const auto corners = pieces.polygons[piece];
+    EXPECT_TRUE(std::ranges::all_of(corners, isWest) || std::ranges::none_of(corners, isWest) ||
+                pieces.area_m2[piece] < 0.04);
+  }
+}
+
+// The slab is cut where a column stands in it, but not by the legs of a stool.
+TEST(Seams, LegsCutNothing) {
+  std::vector<std::size_t> floorPieces;
+  for (const bool hasStool : {false, true}) {
+    Drawing drawing;
+    addLitRoom(drawing, {0, 0, 0}, {4, 3, 3}, plaster, 0);
+    addBox(drawing, {1.0, 1.0, -0.1}, {1.4, 1.4, 3.1}, wood, 1);
+    for (const double x : {2.5, 2.8}) {
+      for (const double y : {1.5, 1.8})
+        if (hasStool) addBox(drawing, {x, y, 0}, {x + 0.04, y + 0.04, 0.45}, wood, 1);
+    }
+    const Building building = buildingOf(drawing.scene);
+    std::size_t count = 0;
+    for (const std::uint32_t piece : piecesAtHeight(building, 0.0))
+      count += building.model.surfaces[building.model.pieces.surface[piece]].material == plaster ? 1 : 0;
+    floorPieces.push_back(count);
+  }
+  EXPECT_GT(floorPieces[0], 1U);
+  EXPECT_EQ(floorPieces[1], floorPieces[0]);
+}
+
 }  // namespace
 }  // namespace clerestory
