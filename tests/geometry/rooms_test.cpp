@@ -87,8 +87,10 @@ TEST(Rooms, AreToldInTheModelsAxes) {
         point.points = {place};
         return turned(isMirrored ? mirrored(point) : point, angle_rad).points[0];
       };
-      Scene scene = twoRooms(0.9, 2.05).scene;
-      scene = turned(isMirrored ? mirrored(scene) : scene, angle_rad);
+      Drawing drawing = twoRooms(0.9, 2.05);
+      addBox(drawing, {7.4, 0.2, 0}, {8.1, 1.2, 1.1}, wood, 1);  // the same from no two sides
+      const Scene& drawn = drawing.scene;
+      const Scene scene = turned(isMirrored ? mirrored(drawn) : drawn, angle_rad);
       LuminaireSettings lamp;
       lamp.photometry = std::make_shared<const Photometry>(lambertianPhotometry(100.0));
       lamp.position_m = placeOf({6.2, 1.1, 2.5});
@@ -101,6 +103,12 @@ TEST(Rooms, AreToldInTheModelsAxes) {
       EXPECT_LT(glm::length(building.luminaires[0].axes[2] + lamp.aim), 1e-12);
       ASSERT_EQ(building.rooms.size(), 2U);
       EXPECT_EQ(building.luminaireDomain[0], building.rooms[0].domain);
+      // From south to north, then from west to east; the pane is the first drawn room's.
+      const glm::dvec3 lit = placeOf({2.0, 1.5, 0});
+      const glm::dvec3 other = placeOf({6.2, 1.5, 0});
+      const bool isFirst = std::abs(lit.y - other.y) > 0.1 ? lit.y < other.y : lit.x < other.x;
+      ASSERT_EQ(building.portals.size(), 1U);
+      EXPECT_EQ(building.portals[0].room, isFirst ? 0 : 1);
       ASSERT_EQ(building.borders.size(), 1U);
       std::vector<glm::dvec3> line_m = building.borders[0].line_m;
       ASSERT_EQ(line_m.size(), 2U);
