@@ -225,7 +225,7 @@ CleanModel cleanScene(const Scene& drawn) {
   model.axes = scene.axes;
 
   Findings findings(scene.objects);
-  addSize(model.counts, "faces as read", scene.faces);
+  addSize(model.counts, scene.cages.empty() ? "faces as read" : "faces as read, without cages", scene.faces);
   Soup soup = collectFaces(scene, tolerances, model, findings);
   if (!scene.cages.empty()) addSize(model.counts, "with facets of subdivision cages", soup.faces);
   windCanonically(soup, isMirrored(frame));

@@ -2,7 +2,10 @@
 // Clean-up of single faces, and the canonical result that does not depend on how a model was written.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "redrawn.hpp"
+#include "soup.hpp"
 
 namespace clerestory {
 namespace {
@@ -150,6 +153,16 @@ TEST(Clean, KeepsTheSideThatAFaceIsDrawnFor) {
       const glm::dvec3& out = model.pieces.points[model.pieces.polygons[i][0]];  // from a point within
       EXPECT_GT(glm::dot(out, drawnNormal(model, i)), 0.0);
     }
+  }
+}
+
+// Halfway between two points of the grid, as half a millimetre in inches may be, rounding decides nothing.
+TEST(Clean, HalvesOfTheGridGoUp) {
+  constexpr double grid_m = 1e-9;
+  for (int step = 0; step < 5000; step += 7) {
+    const double half_m = (step + 0.5) * grid_m;
+    for (const double value_m : {half_m, std::nextafter(half_m, 0.0), std::nextafter(half_m, 1.0)})
+      EXPECT_EQ(onGrid(glm::dvec3(value_m), grid_m).x, (step + 1) / 1e9) << step;
   }
 }
 
