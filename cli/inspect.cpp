@@ -12,6 +12,7 @@
 #include <iomanip>
 #include <memory>
 #include <numeric>
+#include <set>
 #include <sstream>
 #include <system_error>
 
@@ -35,6 +36,7 @@ struct Totals {
   glm::dvec3 lowest{0.0}, highest{0.0};
   std::vector<double> materialArea_m2;  ///< #materials, one side of each piece
   double portalArea_m2 = 0.0;
+  double otherGlazing_m2 = 0.0;  ///< that is no window
 };
 
 Totals totalsOf(const Building& building) {
@@ -53,6 +55,9 @@ Totals totalsOf(const Building& building) {
   }
   for (const Portal& portal : building.portals) {
     totals.portalArea_m2 += pieces.area_m2[portal.piece];
+  }
+  for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
+    if (building.innerGlass[piece]) totals.otherGlazing_m2 += pieces.area_m2[piece];
   }
   return totals;
 }
@@ -188,7 +193,9 @@ Json inspectionJson(const Building& building, const DrawnFaults& faults, const T
   for (const Domain& domain : building.domains) {
     json["domains"].push_back({{"open", domain.open}, {"lit", domain.lit}, {"area_m2", domain.area_m2}});
   }
-  json["portals"] = {{"count", building.portals.size()}, {"area_m2", totals.portalArea_m2}};
+  json["portals"] = {{"count", building.portals.size()},
+                     {"area_m2", totals.portalArea_m2},
+                     {"other_glazing_m2", totals.otherGlazing_m2}};
   json["rooms"] = Json::array();
   for (std::size_t i = 0; i < building.rooms.size(); ++i) {
     const Room& room = building.rooms[i];
@@ -204,9 +211,10 @@ Json inspectionJson(const Building& building, const DrawnFaults& faults, const T
   }
   json["openings"] = Json::array();
   for (const RoomBorder& border : building.borders) {
+    Json line = Json::array();
+    for (const glm::dvec3& place : border.line_m) line.push_back(vectorJson(place));
     json["openings"].push_back({{"rooms", {border.rooms[0], border.rooms[1]}},
-                                {"from_m", vectorJson(border.from_m)},
-                                {"to_m", vectorJson(border.to_m)},
+                                {"line_m", std::move(line)},
                                 {"height_m", border.height_m}});
   }
   json["diagnoses"] = Json::array();
@@ -268,6 +276,16 @@ std::string materialsText(const Building& building, const Totals& totals) {
   return table.text();
 }
 
+/// Rooms that a room opens to, each once.
+std::set<std::int32_t> neighboursOf(const Building& building, std::int32_t room) {
+  std::set<std::int32_t> neighbours;
+  for (const RoomBorder& border : building.borders) {
+    if (border.rooms[0] == room) neighbours.insert(border.rooms[1]);
+    if (border.rooms[1] == room) neighbours.insert(border.rooms[0]);
+  }
+  return neighbours;
+}
+
 std::string roomsText(const Building& building) {
   TextTable table(
       {"room", "floor m2", "volume m3", "floor at m", "ceiling at m", "panes", "panes m2", "opens to"});
@@ -275,12 +293,9 @@ std::string roomsText(const Building& building) {
     const Room& room = building.rooms[i];
     const RoomWindows windows = windowsOf(building, static_cast<std::int32_t>(i));
     std::string opensTo;
-    for (const RoomBorder& border : building.borders) {
-      for (const int end : {0, 1}) {
-        if (border.rooms[end] != static_cast<std::int32_t>(i)) continue;
-        opensTo += (opensTo.empty() ? "" : ", ") +
-                   printable(building.rooms[static_cast<std::size_t>(border.rooms[1 - end])].name);
-      }
+    for (const std::int32_t other : neighboursOf(building, static_cast<std::int32_t>(i))) {
+      opensTo +=
+          (opensTo.empty() ? "" : ", ") + printable(building.rooms[static_cast<std::size_t>(other)].name);
     }
     table.add({printable(room.name), number(room.floorArea_m2, 2), number(room.volume_m3, 2),
                number(room.floor_m, 2), number(room.ceiling_m, 2), std::to_string(windows.panes),
@@ -301,14 +316,17 @@ std::string roomsIn(const Building& building, std::size_t domain) {
 
 std::string airText(const Building& building) {
   TextTable table({"air", "surface m2", "rooms in it"});
-  std::size_t dark = 0;
-  double dark_m2 = 0.0;
+  std::size_t hollows = 0;
+  double hollows_m2 = 0.0;
   for (std::size_t i = 0; i < building.domains.size(); ++i) {
     const Domain& domain = building.domains[i];
     const std::string rooms = roomsIn(building, i);
-    if (!domain.lit && rooms.empty()) {
-      ++dark;
-      dark_m2 += domain.area_m2;
+    const bool hasPane =
+        std::any_of(building.portals.begin(), building.portals.end(),
+                    [&](const Portal& pane) { return pane.inside == static_cast<std::int32_t>(i); });
+    if (!domain.open && !hasPane && rooms.empty()) {
+      ++hollows;
+      hollows_m2 += domain.area_m2;
       continue;
     }
     table.add({domain.open  ? "open to the sky"
@@ -316,10 +334,11 @@ std::string airText(const Building& building) {
                             : "closed, dark",
                number(domain.area_m2, 2), rooms});
   }
-  // Hollows of walls and furniture come by the hundred.
-  if (dark > 0)
-    table.add(
-        {std::to_string(dark) + (dark == 1 ? " dark hollow" : " dark hollows"), number(dark_m2, 2), ""});
+  // Those of walls, ceilings and furniture come by the hundred.
+  if (hollows > 0) {
+    table.add({std::to_string(hollows) + (hollows == 1 ? " hollow" : " hollows") + " without room or pane",
+               number(hollows_m2, 2), ""});
+  }
   return table.text();
 }
 
@@ -363,7 +382,13 @@ std::string inspectionText(const Study& study, const Building& building, const D
           "; up: " + axes.upAxis + (axes.upAxisIsGuessed ? " (guessed; --up states it)" : "") + '\n';
   text += "\nRooms\n" + roomsText(building);
   text += "\nWindows: " + std::to_string(building.portals.size()) +
-          (building.portals.size() == 1 ? " pane, " : " panes, ") + number(totals.portalArea_m2, 2) + " m2\n";
+          (building.portals.size() == 1 ? " pane, " : " panes, ") + number(totals.portalArea_m2, 2) + " m2";
+  constexpr double leastTold_m2 = 0.01;
+  if (totals.otherGlazing_m2 >= leastTold_m2) {
+    text += "; glazing that is no window (within the building, outdoors or covered): " +
+            number(totals.otherGlazing_m2, 2) + " m2";
+  }
+  text += '\n';
   text += warningsText(diagnoses);
   text += "\nMaterials\n" + materialsText(building, totals);
   text += "\nAir that is connected without crossing glass\n" + airText(building);

@@ -3,6 +3,7 @@
 #include "texttable.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
@@ -39,7 +40,9 @@ std::string TextTable::text() const {
 
 std::string number(double value, int digits) {
   std::ostringstream text;
-  text << std::fixed << std::setprecision(digits) << value;
+  const double step = std::pow(10.0, -digits);
+  const bool isZero = std::abs(value) < 0.5 * step;  // without a sign
+  text << std::fixed << std::setprecision(digits) << (isZero ? 0.0 : value);
   return text.str();
 }
 

@@ -37,10 +37,16 @@ std::vector<std::uint32_t> piecesOf(const Building& building, std::int32_t domai
 AirColumn columnOf(const Building& building, const RayScene& rays, std::int32_t domain,
                    const glm::dvec2& place, std::span<const Meeting> meetings) {
   constexpr double touching_m = 1e-4;
-  // A floor or a ceiling may run on over a hollow wall: what is seen from between the two decides.
-  const auto isAir = [&](bool isOursBelow, bool isOursAbove, double middle_m) {
+  constexpr double nearSurface_m = 0.1;
+  // A floor or a ceiling may run on over a hollow wall: what is seen from between the two decides or, since
+  // hardly anything is from between bookcases, from near the one that is ours.
+  const auto isAir = [&](bool isOursBelow, bool isOursAbove, double low_m, double high_m) {
     if (isOursBelow == isOursAbove) return isOursBelow;
-    return isInAir(building, rays, {place, middle_m}, domain);
+    const double middle_m = 0.5 * (low_m + high_m);
+    const double near_m = isOursBelow ? low_m + nearSurface_m : high_m - nearSurface_m;
+    const bool hasNear = high_m - low_m > 2.0 * nearSurface_m;
+    return isInAir(building, rays, {place, middle_m}, domain) ||
+           (hasNear && isInAir(building, rays, {place, near_m}, domain));
   };
   AirColumn column;
   double last_m = 0.0;
@@ -60,7 +66,7 @@ AirColumn columnOf(const Building& building, const RayScene& rays, std::int32_t 
       if (std::abs(slope) > upward && (!tread || (isUnderOurs && !upperIsOurs))) tread = {height_m, piece};
       upperIsOurs = upperIsOurs || isUnderOurs;
     }
-    if (!isFirst && isAir(lastIsOurs, lowerIsOurs, 0.5 * (last_m + height_m)))
+    if (!isFirst && isAir(lastIsOurs, lowerIsOurs, last_m, height_m))
       column.spans.push_back({last_m, height_m});
     if (tread) column.treads.push_back(*tread);
     last_m = height_m;

@@ -9,6 +9,7 @@
 #include "cut.hpp"
 #include "domains.hpp"
 #include "luminaires.hpp"
+#include "ownframe.hpp"
 #include "rooms.hpp"
 
 namespace clerestory {
@@ -38,6 +39,20 @@ void cutAtCrossings(Building& building) {
        "object \"" + objectOf(*longest) + "\"", crossings.size(), longest->place_m});
 }
 
+/// Turns what findings of a building have for places out of the frame, in which it was looked at.
+void turnOutOf(const PlanFrame& frame, Building& building) {
+  turnOutOf(frame, building.model.pieces);
+  for (RoomBorder& border : building.borders)
+    for (glm::dvec3& place : border.line_m) place = outOfFrame(frame, place);
+  for (Diagnosis& diagnosis : building.diagnoses)
+    if (diagnosis.place_m) diagnosis.place_m = outOfFrame(frame, *diagnosis.place_m);
+  for (Mark& mark : building.marks) mark.place_m = outOfFrame(frame, mark.place_m);
+  for (Luminaire& luminaire : building.luminaires) {
+    luminaire.position_m = outOfFrame(frame, luminaire.position_m);
+    for (int axis = 0; axis < 3; ++axis) luminaire.axes[axis] = outOfFrame(frame, luminaire.axes[axis]);
+  }
+}
+
 }  // namespace
 
 Building makeBuilding(CleanModel model, const Study& study) {
@@ -46,17 +61,21 @@ Building makeBuilding(CleanModel model, const Study& study) {
   if (building.model.pieces.size() == 0) {
     throw InputError("the model has no surface left to light: it holds no polygon, or only degenerate ones");
   }
+  const PlanFrame frame = ownFrameOf(building.model.pieces.points, building.model.pieces.polygons);
+  turnInto(frame, Tolerances(), building.model.pieces);
   cutAtPanes(building.model.pieces, building.model.materials);
-  placeLuminaires(building, study);
+  placeLuminaires(building, study, frame);
   findDomains(building);
   cutAtCrossings(building);
+  cutBackToBack(building);
   RayScene rays(building.model, building.innerGlass);
   const std::vector<RoomAir> airs = airOfRooms(building, rays);
   if (cutAtDoorways(building, airs)) rays = RayScene(building.model, building.innerGlass);
-  findRooms(building, rays, airs);
-  if (partBackToBack(building)) rays = RayScene(building.model, building.innerGlass);
+  findRooms(building, frame, rays, airs);
+  partBackToBack(building);
   checkLuminaires(building);
-  layGrids(building, study, rays);
+  turnOutOf(frame, building);
+  if (!study.grids.empty()) layGrids(building, study, RayScene(building.model, building.innerGlass));
   return building;
 }
 

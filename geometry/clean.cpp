@@ -9,12 +9,35 @@
 #include "convex.hpp"
 #include "findings.hpp"
 #include "merge.hpp"
+#include "ownframe.hpp"
 #include "panes.hpp"
 #include "subdivision.hpp"
 #include "weld.hpp"
 
 namespace clerestory {
 namespace {
+
+/// The scene in its own frame, to the grid that all formats share.
+Scene sceneIn(const PlanFrame& frame, const Tolerances& tolerances, Scene scene) {
+  for (glm::dvec3& point : scene.points) point = onGrid(intoFrame(frame, point), tolerances.grid_m);
+  return scene;
+}
+
+/// Winds faces about their canonical normals and keeps which side they were drawn for; `areMirrored`: all are
+/// drawn for the other one.
+void windCanonically(Soup& soup, bool areMirrored) {
+  PolygonList faces;
+  for (std::size_t face = 0; face < soup.faces.size(); ++face) {
+    Loop loop(soup.faces[face].begin(), soup.faces[face].end());
+    const bool isCanonical = canonicalSign(glm::normalize(doubleAreaVector(soup.points, loop))) > 0.0;
+    if (!isCanonical) std::reverse(loop.begin(), loop.end());
+    startAtSmallest(soup.points, loop);
+    faces.add(loop);
+    const bool isFront = isCanonical != areMirrored;
+    soup.drawn.push_back({isFront, !isFront});
+  }
+  soup.faces = std::move(faces);
+}
 
 Soup collectFaces(const Scene& scene, const Tolerances& tolerances, CleanModel& model, Findings& findings) {
   Soup soup{scene.points, scene.faces, scene.faceMaterial, scene.faceObject, {}, {}};
@@ -50,16 +73,13 @@ void notePolygon(const char* code, const Soup& soup, const PlanarPolygon& polygo
                 0.5 * glm::length(doubleAreaVector(soup.points, polygon.outer)));
 }
 
-/// Merged polygons whose outlines are drawn twice, though their faces differed. One drawn both ways is wound
-/// to a side that is left to it.
+/// Merged polygons whose outlines are drawn twice, though their faces differed.
 void dropDuplicatePolygons(const Soup& soup, const NameRanks& ranks, std::vector<PlanarPolygon>& polygons,
                            CleanModel& model, Findings& findings) {
   std::vector<Footprint> footprints;
-  const auto isFront = [&](const PlanarPolygon& polygon) {
-    return canonicalSign(glm::normalize(doubleAreaVector(soup.points, polygon.outer))) > 0.0;
-  };
   for (const PlanarPolygon& polygon : polygons) {
-    Footprint footprint{polygon.outer, polygon.material, polygon.object, isFront(polygon), polygon.bothWays};
+    Footprint footprint{polygon.outer, polygon.material, polygon.object,
+                        model.materials[polygon.material].glazing, polygon.drawn};
     for (const Loop& hole : polygon.holes) {
       footprint.corners.insert(footprint.corners.end(), hole.begin(), hole.end());
     }
@@ -73,7 +93,7 @@ void dropDuplicatePolygons(const Soup& soup, const NameRanks& ranks, std::vector
       notePolygon("G206", soup, polygons[i], findings);
       continue;
     }
-    if (footprints[i].front != isFront(polygons[i])) reverse(polygons[i]);
+    polygons[i].drawn = footprints[i].drawn;
     kept.push_back(std::move(polygons[i]));
   }
   polygons = std::move(kept);
@@ -99,6 +119,7 @@ std::vector<DividedPolygon> divide(Soup& soup, std::vector<PlanarPolygon> polygo
 struct Piece {
   Loop loop;
   std::uint32_t polygon, material, object;
+  bool isDrawnForBack;
 };
 
 /// Pieces by the coordinates of their corners, then by names.
@@ -109,7 +130,7 @@ std::vector<Piece> orderPieces(const Soup& soup, const NameRanks& ranks,
     const PlanarPolygon& polygon = polygons[i].polygon;
     for (Loop& loop : polygons[i].pieces) {
       startAtSmallest(soup.points, loop);
-      pieces.push_back({std::move(loop), i, polygon.material, polygon.object});
+      pieces.push_back({std::move(loop), i, polygon.material, polygon.object, !polygon.drawn.front});
     }
   }
   const auto cornerLess = [&](std::uint32_t a, std::uint32_t b) {
@@ -171,6 +192,7 @@ void assemble(const Scene& scene, const Soup& soup, const std::vector<Piece>& pi
         polygonOf.try_emplace(piece.polygon, static_cast<std::uint32_t>(polygonOf.size())).first->second);
     out.surface.push_back(surfaceOf.at({piece.object, piece.material}));
     out.material.push_back(piece.material);
+    out.isDrawnForBack.push_back(piece.isDrawnForBack);
   }
 }
 
@@ -192,8 +214,10 @@ void addSize(CleanupCounts& counts, const char* step, std::span<const DividedPol
 
 }  // namespace
 
-CleanModel cleanScene(const Scene& scene) {
+CleanModel cleanScene(const Scene& drawn) {
   const Tolerances tolerances;
+  const PlanFrame frame = ownFrameOf(drawn.points, drawn.faces);
+  const Scene scene = sceneIn(frame, tolerances, drawn);
   const NameRanks ranks = rankNames(scene);
   CleanModel model;
   model.materials = scene.materials;
@@ -201,13 +225,15 @@ CleanModel cleanScene(const Scene& scene) {
   model.axes = scene.axes;
 
   Findings findings(scene.objects);
-  addSize(model.counts, "faces as read", scene.faces);
+  addSize(model.counts, scene.cages.empty() ? "faces as read" : "faces as read, without cages", scene.faces);
   Soup soup = collectFaces(scene, tolerances, model, findings);
   if (!scene.cages.empty()) addSize(model.counts, "with facets of subdivision cages", soup.faces);
+  windCanonically(soup, isMirrored(frame));
   soup = weld(soup, tolerances, model.counts);
   dropDegenerateFaces(soup, tolerances, model.counts, findings);
+  sortFaces(soup, ranks);
   addSize(model.counts, "welded, without degenerate faces", soup.faces);
-  dropDuplicateFaces(soup, ranks, model.counts, findings);
+  dropDuplicateFaces(soup, scene.materials, ranks, model.counts, findings);
   addSize(model.counts, "without duplicates", soup.faces);
   splitWarpedFaces(soup, tolerances, model.counts, findings);
   addSize(model.counts, "non-planar faces split", soup.faces);
@@ -224,8 +250,12 @@ CleanModel cleanScene(const Scene& scene) {
   model.counts.pieces = pieces.size();
   assemble(scene, soup, pieces, model);
   addSize(model.counts, "convex pieces", model.pieces.polygons);
+  turnOutOf(frame, model.pieces);
   model.diagnoses = findings.diagnoses();
   model.marks = findings.marks();
+  for (Diagnosis& diagnosis : model.diagnoses)
+    if (diagnosis.place_m) diagnosis.place_m = outOfFrame(frame, *diagnosis.place_m);
+  for (Mark& mark : model.marks) mark.place_m = outOfFrame(frame, mark.place_m);
   return model;
 }
 

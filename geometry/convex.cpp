@@ -28,8 +28,8 @@ glm::dvec3 unitNormal(std::span<const glm::dvec3> points, const PlanarPolygon& p
   return glm::normalize(sum);
 }
 
-FlatPolygon flatten(std::span<const glm::dvec3> points, const PlanarPolygon& polygon, const PlaneFrame& frame,
-                    bool reversed) {
+FlatPolygon flatten(std::span<const glm::dvec3> points, const PlanarPolygon& polygon,
+                    const PlaneFrame& frame) {
   FlatPolygon result;
   std::unordered_map<std::uint32_t, std::uint32_t> localOf;
   const auto addRing = [&](const Loop& ring) {
@@ -43,7 +43,6 @@ FlatPolygon flatten(std::span<const glm::dvec3> points, const PlanarPolygon& pol
       }
       loop.push_back(found->second);
     }
-    if (reversed) std::reverse(loop.begin(), loop.end());
     result.rings.push_back(std::move(loop));
   };
   addRing(polygon.outer);
@@ -372,12 +371,9 @@ std::vector<Loop> mergedTriangles(const FlatPolygon& polygon, const Tolerances& 
 
 std::vector<Loop> convexPieces(std::vector<glm::dvec3>& points, const PlanarPolygon& polygon,
                                const Tolerances& tolerances) {
-  // Divided as seen from the canonical side, so that the winding does not change the cuts.
-  const glm::dvec3 drawn = unitNormal(points, polygon);
-  const bool reversed = canonicalSign(drawn) < 0.0;
-  const glm::dvec3 normal = reversed ? -drawn : drawn;
+  const glm::dvec3 normal = unitNormal(points, polygon);
   const PlaneFrame frame(normal, points[polygon.outer[0]]);
-  const FlatPolygon flat = flatten(points, polygon, frame, reversed);
+  const FlatPolygon flat = flatten(points, polygon, frame);
   if (isConvex(flat, tolerances.collinear_m)) return {polygon.outer};
 
   Raster raster(flat, tolerances.collinear_m);
@@ -387,12 +383,9 @@ std::vector<Loop> convexPieces(std::vector<glm::dvec3>& points, const PlanarPoly
     // A slightly warped outline may cross itself in its mean plane but not in the one it was found in.
     const double sign = glm::dot(polygon.mergedAlong, normal) < 0.0 ? -1.0 : 1.0;
     const PlaneFrame other(sign * polygon.mergedAlong, points[polygon.outer[0]]);
-    result = mergedTriangles(flatten(points, polygon, other, reversed), tolerances);
+    result = mergedTriangles(flatten(points, polygon, other), tolerances);
   }
-  for (Loop& loop : result) {
-    dropCollinearCorners(points, tolerances.collinear_m, loop);
-    if (reversed) std::reverse(loop.begin(), loop.end());
-  }
+  for (Loop& loop : result) dropCollinearCorners(points, tolerances.collinear_m, loop);
   std::erase_if(result, [&](const Loop& loop) {
     return loop.size() < 3 ||
            glm::length(doubleAreaVector(points, loop)) < 2.0 * tolerances.degenerateArea_m2;

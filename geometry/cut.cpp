@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "parts.hpp"
+
 namespace clerestory {
 namespace {
 
@@ -24,7 +26,7 @@ constexpr double parallelLeast = 0.95;    // cosine of the angle between planes
 
 /// A polygon that others are cut at, in its plane.
 struct Cutter {
-  std::vector<glm::dvec3> corners;  // counterclockwise about the normal
+  Polygon corners;  // counterclockwise about the normal
   glm::dvec3 normal;
   glm::dvec3 low, high;  // bounding box, grown by the reach
   double reach_m;        // how far beyond its outline it cuts
@@ -55,34 +57,7 @@ double overlap(const Cutter& pane, const glm::dvec3& a, const glm::dvec3& b) {
   return std::max(last - first, 0.0) * glm::length(b - a);
 }
 
-/// A convex polygon parted by a plane; `cut` holds the two points where its outline meets it.
-struct Parts {
-  std::vector<glm::dvec3> front, back, cut;
-};
-
-Parts partPolygon(const std::vector<glm::dvec3>& polygon, const Cutter& pane) {
-  Parts parts;
-  const auto height = [&](const glm::dvec3& point) {
-    const double h = glm::dot(point - pane.corners[0], pane.normal);
-    return std::abs(h) < 1e-7 ? 0.0 : h;
-  };
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const double from = height(polygon[j]);
-    const double to = height(polygon[i]);
-    if (from * to < 0.0) {
-      const glm::dvec3 point = polygon[j] + from / (from - to) * (polygon[i] - polygon[j]);
-      parts.front.push_back(point);
-      parts.back.push_back(point);
-      parts.cut.push_back(point);
-    }
-    if (to >= 0.0) parts.front.push_back(polygon[i]);
-    if (to <= 0.0) parts.back.push_back(polygon[i]);
-    if (to == 0.0) parts.cut.push_back(polygon[i]);
-  }
-  return parts;
-}
-
-bool mustBeCut(const std::vector<glm::dvec3>& polygon, const Cutter& pane) {
+bool mustBeCut(const Polygon& polygon, const Cutter& pane) {
   glm::dvec3 low(1e300);
   glm::dvec3 high(-1e300);
   double lowest = 1e300;
@@ -98,21 +73,12 @@ bool mustBeCut(const std::vector<glm::dvec3>& polygon, const Cutter& pane) {
   return glm::all(glm::lessThanEqual(low, pane.high)) && glm::all(glm::lessThanEqual(pane.low, high));
 }
 
-double areaOf(const std::vector<glm::dvec3>& polygon) {
-  glm::dvec3 sum(0.0);
-  for (std::size_t i = 2; i < polygon.size(); ++i) {
-    sum += glm::cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
-  }
-  return 0.5 * glm::length(sum);
-}
-
-std::vector<std::vector<glm::dvec3>> cutByAll(const std::vector<glm::dvec3>& whole,
-                                              std::span<const Cutter* const> cutters) {
-  std::vector<std::vector<glm::dvec3>> parts{whole};
+std::vector<Polygon> cutByAll(const Polygon& whole, std::span<const Cutter* const> cutters) {
+  std::vector<Polygon> parts{whole};
   for (const Cutter* cutter : cutters) {
     for (std::size_t i = 0; i < parts.size(); ++i) {
       if (!mustBeCut(parts[i], *cutter)) continue;
-      Parts halves = partPolygon(parts[i], *cutter);
+      Parts halves = partAt(parts[i], cutter->corners[0], cutter->normal);
       if (halves.cut.size() < 2 || halves.front.size() < 3 || halves.back.size() < 3) continue;
       if (overlap(*cutter, halves.cut.front(), halves.cut.back()) < overlapMin_m) continue;
       parts[i] = std::move(halves.front);
@@ -136,13 +102,13 @@ std::pair<double, double> reachOf(const Cutter& polygon, const Cutter& plane) {
 
 /// Length along which the other polygon, grown by its reach, touches this one. [m]
 double lineOfContact(const Cutter& polygon, const Cutter& other) {
-  const Parts halves = partPolygon(polygon.corners, other);
+  const Parts halves = partAt(polygon.corners, other.corners[0], other.normal);
   if (halves.cut.size() < 2) return 0.0;
   return overlap(other, halves.cut.front(), halves.cut.back());
 }
 
 glm::dvec3 middleOfContact(const Cutter& polygon, const Cutter& other) {
-  const Parts halves = partPolygon(polygon.corners, other);
+  const Parts halves = partAt(polygon.corners, other.corners[0], other.normal);
   const glm::dvec3 low = glm::max(glm::min(halves.cut.front(), halves.cut.back()), other.low);
   const glm::dvec3 high = glm::min(glm::max(halves.cut.front(), halves.cut.back()), other.high);
   return 0.5 * (low + high);
@@ -196,43 +162,10 @@ void forEachPairThatMeets(const std::vector<Cutter>& all, const Visit& visit) {
 /// piece that each of the new ones is a part of.
 template <class CuttersOf>
 std::vector<std::uint32_t> cutPieces(Pieces& pieces, const CuttersOf& cuttersOf) {
-  Pieces result;
-  result.points = pieces.points;
-  std::vector<std::uint32_t> wholeOf;
-  for (std::uint32_t piece = 0; piece < pieces.size(); ++piece) {
-    const auto keep = [&](std::span<const std::uint32_t> corners, double area_m2) {
-      result.polygons.add(corners);
-      result.normal.push_back(pieces.normal[piece]);
-      result.area_m2.push_back(area_m2);
-      result.polygon.push_back(pieces.polygon[piece]);
-      result.surface.push_back(pieces.surface[piece]);
-      result.material.push_back(pieces.material[piece]);
-      wholeOf.push_back(piece);
-    };
-    std::vector<glm::dvec3> whole;
-    for (const std::uint32_t corner : pieces.polygons[piece]) whole.push_back(pieces.points[corner]);
+  return divide(pieces, [&](std::uint32_t piece, const Polygon& whole) {
     const std::vector<const Cutter*>& cutters = cuttersOf(piece);
-    const auto parts = cutByAll(whole, cutters);
-    if (parts.size() == 1) {
-      keep(pieces.polygons[piece], pieces.area_m2[piece]);
-      continue;
-    }
-    for (const std::vector<glm::dvec3>& part : parts) {
-      std::vector<std::uint32_t> corners;
-      for (const glm::dvec3& point : part) {
-        const auto same = std::find(whole.begin(), whole.end(), point);
-        if (same != whole.end()) {
-          corners.push_back(pieces.polygons[piece][static_cast<std::size_t>(same - whole.begin())]);
-        } else {
-          corners.push_back(static_cast<std::uint32_t>(result.points.size()));
-          result.points.push_back(point);
-        }
-      }
-      keep(corners, areaOf(part));
-    }
-  }
-  pieces = std::move(result);
-  return wholeOf;
+    return cutByAll(whole, cutters);
+  });
 }
 
 }  // namespace
@@ -251,7 +184,8 @@ void cutAtPanes(Pieces& pieces, const std::vector<Material>& materials) {
   });
 }
 
-std::vector<std::uint32_t> cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs) {
+std::vector<std::uint32_t> cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs,
+                                       const std::vector<bool>& partAirs) {
   std::vector<Cutter> all;
   for (std::uint32_t piece = 0; piece < pieces.size(); ++piece)
     all.push_back(cutterOf(pieces, piece, wallReach_m));
@@ -262,7 +196,7 @@ std::vector<std::uint32_t> cutWhereMet(Pieces& pieces, const std::vector<bool>& 
       const bool apart = glm::any(glm::lessThan(all[other].high, all[piece].low)) ||
                          glm::any(glm::lessThan(all[piece].high, all[other].low));
       const bool isParallel = std::abs(glm::dot(all[other].normal, all[piece].normal)) > 0.999;
-      if (other != piece && !apart && !isParallel) cutters.push_back(&all[other]);
+      if (other != piece && partAirs[other] && !apart && !isParallel) cutters.push_back(&all[other]);
     }
     return cutters;
   });

@@ -12,9 +12,11 @@ namespace clerestory {
 /// Areas add up; the canonical order of the pieces is kept.
 void cutAtPanes(Pieces& pieces, const std::vector<Material>& materials);
 
-/// Splits the marked pieces (a floor that runs through under a wall, a post that stands in a slab) along the
-/// planes of all pieces that meet them. Returns the piece that each of the new ones is a part of.
-std::vector<std::uint32_t> cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs);
+/// Splits the pieces `inTwoAirs` (a floor that runs through under a wall, a post that stands in a slab) along
+/// the planes of those that `partAirs` and meet them. Returns the piece that each of the new ones is a part
+/// of.
+std::vector<std::uint32_t> cutWhereMet(Pieces& pieces, const std::vector<bool>& inTwoAirs,
+                                       const std::vector<bool>& partAirs);
 
 /// An upright rectangle over the line between two points.
 struct UprightCut {

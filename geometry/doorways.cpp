@@ -132,7 +132,9 @@ std::vector<Doorway> doorwaysOf(const Building& building, const RoomAir& air, co
     const glm::dvec2 from = snapped(uprights, opening.from_m, direction);
     const glm::dvec2 to = snapped(uprights, opening.to_m, direction);
     if (glm::length(to - from) < 0.1) continue;
-    doorways.push_back({opening.regions, {from, low_m}, {to, low_m}, high_m - low_m, opening.alongFloors});
+    doorways.push_back(
+        {opening.regions, {from, low_m}, {to, low_m}, high_m - low_m, opening.alongFloors, {}});
+    for (const glm::dvec2& bend : opening.bends_m) doorways.back().bends_m.emplace_back(bend, low_m);
   }
   return doorways;
 }

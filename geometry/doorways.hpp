@@ -9,12 +9,14 @@
 
 namespace clerestory {
 
-/// An opening between two regions of a storey, exactly: upright over the line between two ends.
+/// An opening between two regions of a storey, exactly: upright over the line between two ends. Where only
+/// floors tell the two apart its line may bend.
 struct Doorway {
   std::array<std::int32_t, 2> regions;
   glm::dvec3 from_m, to_m;  ///< at its foot
   double height_m;
   bool alongFloors;
+  std::vector<glm::dvec3> bends_m;
 };
 
 /// A domain's air as its rooms see it.

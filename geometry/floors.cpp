@@ -57,6 +57,10 @@ struct Tile {
   [[nodiscard]] double shareOf(auto&& holds) const {
     return static_cast<double>(std::ranges::count_if(looks, holds)) / static_cast<double>(looks.size());
   }
+  /// Without what lies under walls, of which pieces may have any amount.
+  [[nodiscard]] double inAir_m2() const {
+    return area_m2 * shareOf([](const Look& look) { return look.isStoodOn || look.region >= 0; });
+  }
   [[nodiscard]] double stoodOn_m2() const {
     return area_m2 * shareOf([](const Look& look) { return look.isStoodOn; });
   }
@@ -390,7 +394,7 @@ std::vector<Level> levelsOf(const Building& building, const RayScene& rays, cons
     std::map<std::uint32_t, std::array<double, 2>> areaAndStoodOn_m2;  // by surface
     while (end < tiles.size() && tiles[end].height_m - tiles[first].height_m <= levelTolerance_m) {
       auto& [area_m2, stoodOn_m2] = areaAndStoodOn_m2[pieces.surface[tiles[end].piece]];
-      area_m2 += tiles[end].area_m2;
+      area_m2 += tiles[end].inAir_m2();
       stoodOn_m2 += tiles[end].stoodOn_m2();
       ++end;
     }
@@ -399,7 +403,7 @@ std::vector<Level> levelsOf(const Building& building, const RayScene& rays, cons
     for (std::size_t i = first; i < end; ++i) {
       const auto& [area_m2, stoodOn_m2] = areaAndStoodOn_m2[pieces.surface[tiles[i].piece]];
       if (stoodOn_m2 < stoodOnLeast * area_m2) continue;
-      level_m2 += tiles[i].area_m2;
+      level_m2 += tiles[i].inAir_m2();
       level.pieces.push_back(tiles[i]);
       for (const std::uint32_t corner : pieces.polygons[tiles[i].piece]) {
         level.lowest_m = std::min(level.lowest_m, pieces.points[corner].z);

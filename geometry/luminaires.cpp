@@ -8,6 +8,8 @@
 #include <array>
 #include <set>
 
+#include "ownframe.hpp"
+
 namespace clerestory {
 namespace {
 
@@ -39,10 +41,14 @@ void addLuminaireDiagnosis(Building& building, const Luminaire& luminaire, const
 
 }  // namespace
 
-void placeLuminaires(Building& building, const Study& study) {
+void placeLuminaires(Building& building, const Study& study, const PlanFrame& frame) {
   building.luminaires = building.model.luminaires;
   const std::vector<Luminaire> ofStudy = luminairesOf(study);
   building.luminaires.insert(building.luminaires.end(), ofStudy.begin(), ofStudy.end());
+  for (Luminaire& luminaire : building.luminaires) {
+    luminaire.position_m = intoFrame(frame, luminaire.position_m);
+    for (int axis = 0; axis < 3; ++axis) luminaire.axes[axis] = intoFrame(frame, luminaire.axes[axis]);
+  }
   std::set<const Photometry*> files;
   for (const Luminaire& luminaire : building.luminaires) {
     if (!files.insert(luminaire.photometry.get()).second) continue;

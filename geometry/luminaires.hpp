@@ -8,12 +8,14 @@
 #include <geometry/building.hpp>
 #include <geometry/rays.hpp>
 
+#include "planframe.hpp"
+
 namespace clerestory {
 
-/// Puts a building's luminaires in place: those of the model and of the study, with what their files had to
-/// say. One that lies in or little behind a surface, as a recessed one in a ceiling, comes a millimetre
-/// before it.
-void placeLuminaires(Building& building, const Study& study);
+/// Puts a building's luminaires in place, in the frame that its pieces lie in: those of the model and of the
+/// study, with what their files had to say. One that lies in or little behind a surface, as a recessed one in
+/// a ceiling, comes a millimetre before it.
+void placeLuminaires(Building& building, const Study& study, const PlanFrame& frame);
 
 /// What a luminaire sees along its aim or, where `isAir` refuses that side, about it: a side, or nothing (a
 /// false Hit). Empty where all are refused, so that it is within something solid.

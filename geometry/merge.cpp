@@ -91,30 +91,31 @@ Loop sharedCorners(const std::vector<Loop>& rings) {
   return shared;
 }
 
-/// Winds each polygon as most of the area of the faces at its corners is drawn.
-void windAsDrawn(const Soup& soup, std::span<const Face> faces, const glm::dvec3& normal,
-                 std::vector<PlanarPolygon>& polygons) {
-  constexpr double even = 1e-3;  // share of the area that tells one way from both
+/// Finds the side of each polygon that most of the area of the faces at its corners is drawn for.
+void findDrawnSides(const Soup& soup, std::span<const Face> faces, const glm::dvec3& normal,
+                    std::vector<PlanarPolygon>& polygons) {
+  constexpr double even = 1e-3;  // share of the area that tells one side from both
   struct Votes {
-    double along_m2 = 0.0, all_m2 = 0.0;
+    double front_m2 = 0.0, all_m2 = 0.0;  // front less back
   };
   std::unordered_map<std::uint32_t, Votes> votesAt;  // by corner
   for (const Face& face : faces) {
+    const DrawnSides& drawn = soup.drawn[face.index];
+    const bool isFront = drawn.front == (glm::dot(face.normal, normal) > 0.0);
     for (const std::uint32_t corner : soup.faces[face.index]) {
       Votes& votes = votesAt[corner];
       votes.all_m2 += face.area_m2;
-      if (soup.bothWays[face.index]) continue;
-      votes.along_m2 += face.area_m2 * (glm::dot(face.normal, normal) > 0.0 ? 1.0 : -1.0);
+      if (!drawn.areBoth()) votes.front_m2 += isFront ? face.area_m2 : -face.area_m2;
     }
   }
   for (PlanarPolygon& polygon : polygons) {
     Votes sum;
     for (const std::uint32_t corner : polygon.outer) {
-      sum.along_m2 += votesAt[corner].along_m2;
+      sum.front_m2 += votesAt[corner].front_m2;
       sum.all_m2 += votesAt[corner].all_m2;
     }
-    polygon.bothWays = std::abs(sum.along_m2) <= even * sum.all_m2;
-    if (!polygon.bothWays && sum.along_m2 < 0.0) reverse(polygon);
+    const double least_m2 = even * sum.all_m2;
+    polygon.drawn = {sum.front_m2 >= -least_m2, sum.front_m2 <= least_m2};
   }
 }
 
@@ -141,11 +142,11 @@ void mergeFaces(Soup& soup, const Tolerances& tolerances, std::span<const Face> 
       for (const Face& face : faces) area_m2 += face.area_m2;
       findings.note("G204", soup.points, soup.faces[seed.index], object, area_m2);
     }
-    windAsDrawn(soup, faces, normal, polygons);
+    findDrawnSides(soup, faces, normal, polygons);
   } else {
     for (const Face& face : faces) {
       const auto corners = soup.faces[face.index];
-      polygons.push_back({.outer = Loop(corners.begin(), corners.end())});
+      polygons.push_back({.outer = Loop(corners.begin(), corners.end()), .drawn = soup.drawn[face.index]});
       findings.note("G205", soup.points, corners, object, face.area_m2);
     }
   }
@@ -158,11 +159,6 @@ void mergeFaces(Soup& soup, const Tolerances& tolerances, std::span<const Face> 
 }
 
 }  // namespace
-
-void reverse(PlanarPolygon& polygon) {
-  std::reverse(polygon.outer.begin(), polygon.outer.end());
-  for (Loop& hole : polygon.holes) std::reverse(hole.begin(), hole.end());
-}
 
 void dropCollinearCorners(std::span<const glm::dvec3> points, double tolerance_m, Loop& loop,
                           std::span<const std::uint32_t> needed) {

@@ -11,9 +11,6 @@ namespace clerestory {
 /// drawn.
 std::vector<PlanarPolygon> mergeCoplanar(Soup& soup, const Tolerances& tolerances, Findings& findings);
 
-/// Winds it the other way.
-void reverse(PlanarPolygon& polygon);
-
 /// Drops corners that lie on the line of their neighbours, but for those in `needed` (sorted).
 void dropCollinearCorners(std::span<const glm::dvec3> points, double tolerance_m, Loop& loop,
                           std::span<const std::uint32_t> needed = {});

@@ -11,6 +11,8 @@
 #include <map>
 #include <utility>
 
+#include "borderline.hpp"
+
 namespace clerestory {
 namespace {
 
@@ -394,7 +396,7 @@ class Parting {
   }
 
   [[nodiscard]] Opening openingOf(const Border& border) const {
-    Opening opening{border.regions, {}, {}, border.alongFloors, {}};
+    Opening opening{border.regions, {}, {}, border.alongFloors, {}, {}};
     double longest_m = -1.0;
     std::vector<glm::dvec2> places;
     for (const Edge& edge : border.edges) {
@@ -409,7 +411,24 @@ class Parting {
         opening.to_m = b;
       }
     }
+    if (border.alongFloors) bend(border, opening);
     return opening;
+  }
+
+  /// Lets an opening follow its border round corners.
+  void bend(const Border& border, Opening& opening) const {
+    std::vector<std::array<glm::dvec2, 2>> edges;
+    for (const Edge& edge : border.edges) {
+      const glm::dvec2 middle = map_.edgeTo(edge.cell, edge.way);
+      const glm::dvec2 half =
+          0.5 * map_.cell_m() * (edge.way == 0 ? map_.frame().across : map_.frame().along);
+      edges.push_back({middle - half, middle + half});
+    }
+    const std::vector<glm::dvec2> line = lineAlong(edges, map_.cell_m());
+    if (line.size() < 3) return;
+    opening.from_m = line.front();
+    opening.to_m = line.back();
+    opening.bends_m.assign(line.begin() + 1, line.end() - 1);
   }
 
   const AirMap& map_;

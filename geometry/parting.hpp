@@ -41,6 +41,7 @@ struct Opening {
   glm::dvec2 from_m, to_m;           ///< its ends in plan, to a cell
   bool alongFloors;                  ///< only the floors' surfaces tell the two apart
   std::vector<std::uint32_t> cells;  ///< at its edge
+  std::vector<glm::dvec2> bends_m;   ///< on the way between its ends, to a cell; of one along floors
 };
 
 struct Parted {

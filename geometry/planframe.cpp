@@ -52,8 +52,9 @@ glm::dvec2 centreOf(const Triangles& triangles) {
   return total_m2 > 0.0 ? sum / total_m2 : sum;
 }
 
-/// Second and third moment of area along two axes. [m⁴], [m⁵]
+/// Area, and second and third moment of it along two axes. [m²], [m⁴], [m⁵]
 struct Moments {
+  double area_m2 = 0.0;
   glm::dvec2 second{0.0}, third{0.0};
 };
 
@@ -66,6 +67,7 @@ Moments momentsOf(const Triangles& triangles, const PlanFrame& frame) {
     // Complete symmetric sums of the corners' coordinates.
     const glm::dvec2 second = a * a + b * (a + b) + c * (a + b + c);
     const glm::dvec2 third = a * a * a + b * (a * a + b * (a + b)) + c * second;
+    moments.area_m2 += area_m2;
     moments.second += area_m2 / 6.0 * second;
     moments.third += area_m2 / 10.0 * third;
   });
@@ -95,16 +97,28 @@ glm::dvec2 directionOf(std::span<const glm::dvec3> points, const PolygonList& po
   double direction = 0.0;
   for (std::size_t first = 0, end = 0; first < byAngle.size(); first = end) {
     double area_m2 = 0.0;
-    double sum = 0.0;
-    for (; end < byAngle.size() && byAngle[end].angle - byAngle[first].angle <= alike; ++end) {
+    for (; end < byAngle.size() && byAngle[end].angle - byAngle[first].angle <= alike; ++end)
       area_m2 += byAngle[end].area_m2;
-      sum += byAngle[end].area_m2 * byAngle[end].angle;
-    }
     if (area_m2 <= most_m2) continue;
     most_m2 = area_m2;
-    direction = sum / area_m2;
+    // That of the median wall: a few that are a little askew do not turn the others out of their axes.
+    double passed_m2 = 0.0;
+    for (std::size_t i = first; passed_m2 < 0.5 * area_m2; ++i) {
+      passed_m2 += byAngle[i].area_m2;
+      direction = byAngle[i].angle;
+    }
   }
+  constexpr double square = 1e-9;  // radians: along the model's own axes but for rounding
+  if (std::min(direction, std::abs(quarter - direction)) < square) return {1.0, 0.0};
+  constexpr double stepsOfRadian = 1e12;  // rounding decides nothing
+  direction = std::round(direction * stepsOfRadian) / stepsOfRadian;
   return {std::cos(direction), std::sin(direction)};
+}
+
+/// Whether a moment is less than nothing, where rounding makes it more or less than that.
+bool isNegative(double third_m5, double second_m4, double area_m2) {
+  constexpr double nothing = 1e-6;
+  return third_m5 < -nothing * second_m4 * std::sqrt(second_m4 / std::max(area_m2, 1e-300));
 }
 
 }  // namespace
@@ -117,9 +131,10 @@ PlanFrame planFrameOf(std::span<const glm::dvec3> points, const PolygonList& pol
   frame.along = directionOf(points, polygons, walls);
   frame.across = {-frame.along.y, frame.along.x};
   const Moments moments = momentsOf(triangles, frame);
-  if (moments.third.x < 0.0) frame.along = -frame.along;
-  if (moments.third.y < 0.0) frame.across = -frame.across;
-  if (moments.second.y > moments.second.x) std::swap(frame.along, frame.across);
+  constexpr double square = 1.0 + 1e-9;
+  if (isNegative(moments.third.x, moments.second.x, moments.area_m2)) frame.along = -frame.along;
+  if (isNegative(moments.third.y, moments.second.y, moments.area_m2)) frame.across = -frame.across;
+  if (moments.second.y > square * moments.second.x) std::swap(frame.along, frame.across);
   return frame;
 }
 

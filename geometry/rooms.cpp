@@ -16,6 +16,7 @@
 
 #include "floors.hpp"
 #include "gaps.hpp"
+#include "ownframe.hpp"
 #include "roomnames.hpp"
 
 namespace clerestory {
@@ -33,6 +34,17 @@ glm::dvec3 centreOf(const Pieces& pieces, std::uint32_t piece) {
   glm::dvec3 sum(0.0);
   for (const std::uint32_t corner : pieces.polygons[piece]) sum += pieces.points[corner];
   return sum / static_cast<double>(pieces.polygons[piece].size());
+}
+
+/// Centre of a room's floor in the model's axes, which `frame` was turned out of.
+glm::dvec3 centreOfFloor(const Pieces& pieces, const Room& room, const PlanFrame& frame) {
+  glm::dvec3 sum(0.0);
+  double area_m2 = 0.0;
+  for (const std::uint32_t piece : room.floorPieces) {
+    sum += pieces.area_m2[piece] * centreOf(pieces, piece);
+    area_m2 += pieces.area_m2[piece];
+  }
+  return outOfFrame(frame, sum / area_m2);
 }
 
 /// Air of a region by its cells: the height of most of its ceiling (the mean one where it slopes), and how
@@ -221,7 +233,10 @@ void addBorders(Building& building, const std::vector<Draft>& drafts, const std:
         const auto b = roomOf.find({&air, s, doorway.regions[1]});
         if (a == roomOf.end() || b == roomOf.end()) continue;
         const auto [low, high] = std::minmax(a->second, b->second);
-        building.borders.push_back({{low, high}, doorway.from_m, doorway.to_m, doorway.height_m});
+        RoomBorder& border = building.borders.emplace_back();
+        border = {{low, high}, {doorway.from_m}, doorway.height_m};
+        border.line_m.insert(border.line_m.end(), doorway.bends_m.begin(), doorway.bends_m.end());
+        border.line_m.push_back(doorway.to_m);
       }
     }
   }
@@ -250,7 +265,8 @@ std::optional<Gap> gapAround(const Building& building, const Room& room) {
 
 }  // namespace
 
-void findRooms(Building& building, const RayScene& rays, const std::vector<RoomAir>& airs) {
+void findRooms(Building& building, const PlanFrame& frame, const RayScene& rays,
+               const std::vector<RoomAir>& airs) {
   const Pieces& pieces = building.model.pieces;
   std::vector<Draft> drafts;
   std::vector<Draft> covered;  // outdoors
@@ -278,7 +294,7 @@ void findRooms(Building& building, const RayScene& rays, const std::vector<RoomA
 
   // From bottom to top, south to north, west to east: names that do not depend on the file's order.
   const auto place = [&](const Draft& draft) {
-    const glm::dvec3 centre = centreOf(pieces, draft.room.floorPieces.front());
+    const glm::dvec3 centre = centreOfFloor(pieces, draft.room, frame);
     return std::array{std::round(10.0 * draft.room.floor_m), std::round(10.0 * centre.y), centre.x};
   };
   std::stable_sort(drafts.begin(), drafts.end(),

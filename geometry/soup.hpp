@@ -31,23 +31,32 @@ struct Tolerances {
 
 using Loop = std::vector<std::uint32_t>;  ///< indices of points, closed
 
-/// Faces with their provenance. After welding, points are in lexicographic order.
+/// The sides that a face is drawn for, of which the front is the one that it is wound counterclockwise about.
+struct DrawnSides {
+  bool front = true;
+  bool back = false;
+
+  [[nodiscard]] bool areBoth() const { return front && back; }
+};
+
+/// Faces with their provenance. They are wound about canonical normals, whichever way they were drawn, so
+/// that this changes no digit. After welding, points are in lexicographic order.
 struct Soup {
   std::vector<glm::dvec3> points;
   PolygonList faces;
   std::vector<std::uint32_t> material;  ///< #faces
   std::vector<std::uint32_t> object;    ///< #faces
+  std::vector<DrawnSides> drawn;        ///< #faces
   std::vector<bool> displaced;  ///< #faces: the weld has moved a corner, so the face may be warped a little
-  std::vector<bool> bothWays;   ///< #faces: drawn once each way, of which one is left
 };
 
-/// A maximal planar region: an outer ring, counterclockwise about its drawn normal, and holes, clockwise.
+/// A maximal planar region: an outer ring, counterclockwise about its normal, and holes, clockwise.
 struct PlanarPolygon {
   Loop outer{};
   std::vector<Loop> holes{};
   std::uint32_t material = 0;
   std::uint32_t object = 0;
-  bool bothWays = false;        ///< as much of it is wound one way as the other
+  DrawnSides drawn{};           ///< both where as much of it is drawn for one as for the other
   glm::dvec3 mergedAlong{0.0};  ///< unit normal of the plane in which the outline was found; either sign
 };
 
@@ -65,10 +74,11 @@ inline bool lexicographicallyLess(const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 /// A point on the grid. Dividing by the whole number of steps per metre gives the double nearest to the
-/// decimal.
+/// decimal. Halves go up, also where rounding makes them a little less.
 inline glm::dvec3 onGrid(const glm::dvec3& point, double grid_m) {
+  constexpr double half = 0.51;
   const double perMetre = glm::round(1.0 / grid_m);
-  return glm::round(point * perMetre) / perMetre + 0.0;  // + 0.0 turns -0 into 0
+  return glm::floor(point * perMetre + half) / perMetre + 0.0;  // + 0.0 turns -0 into 0
 }
 
 /// Twice the area of a loop along its normal (Newell).

@@ -11,8 +11,8 @@ namespace clerestory {
 namespace {
 
 constexpr double headroom_m = 1.6;
-constexpr double storeyLeast_m = 1.8;  // between floors of two storeys
-constexpr double floorLeast_m2 = 0.8;
+constexpr double storeyLeast_m = 1.8;    // between floors of two storeys
+constexpr double floorLeast_m2 = 0.5;    // free of furniture: a lavatory with what stands in it
 constexpr double furniture_m = 1.2;      // tops of beds and tables lie within this height over the floor …
 constexpr double floorShare = 0.25;      // … of which this share of their area shows around them
 constexpr double overDoors_m = 2.15;     // above the floor: above the usual lintel

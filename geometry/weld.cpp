@@ -9,10 +9,10 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <tuple>
 #include <unordered_map>
 
 #include "dividing.hpp"
-#include "planframe.hpp"
 #include "triangulate.hpp"
 
 namespace clerestory {
@@ -88,15 +88,15 @@ void filterFaces(Soup& soup, Keep keep) {
     faces.add(corners);
     soup.material[kept] = soup.material[face];
     soup.object[kept] = soup.object[face];
+    soup.drawn[kept] = soup.drawn[face];
     soup.displaced[kept] = soup.displaced[face];
-    soup.bothWays[kept] = soup.bothWays[face];
     ++kept;
   }
   soup.faces = std::move(faces);
   soup.material.resize(kept);
   soup.object.resize(kept);
+  soup.drawn.resize(kept);
   soup.displaced.resize(kept);
-  soup.bothWays.resize(kept);
 }
 
 /// Drops corners that repeat the one before, and spikes that go out and back on one edge.
@@ -212,17 +212,9 @@ std::vector<long> weightsOf(const Soup& soup, std::span<const std::uint32_t> pla
   return weights;
 }
 
-/// How far places lie along a direction of the model's own frame, askew to its axes: which of two comes first
-/// changes neither where a model is turned nor where it is mirrored. [m]
-std::vector<double> ranksOf(const Soup& soup, std::span<const glm::dvec3> places) {
-  const glm::dvec3 askew(0.612, 0.275, 0.741);
-  Loop all(soup.faces.size());
-  std::iota(all.begin(), all.end(), 0U);
-  const PlanFrame frame = planFrameOf(soup.points, soup.faces, all);
-  std::vector<double> ranks_m;
-  for (const glm::dvec3& place : places)
-    ranks_m.push_back(glm::dot(glm::dvec3(frame.toFrame(glm::dvec2(place)), place.z), askew));
-  return ranks_m;
+/// How far a place lies along a direction askew to the model's axes, which tells any two apart. [m]
+double rankOf(const glm::dvec3& place) {
+  return glm::dot(place, glm::dvec3(0.612, 0.275, 0.741));
 }
 
 /// Where a place that divides an edge comes to lie, whose ends are kept at other places.
@@ -244,11 +236,10 @@ Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts)
   std::vector<glm::dvec3> places;
   const std::vector<std::uint32_t> placeOf = distinctPlaces(soup, onTheGrid, places);
   const std::vector<long> weights = weightsOf(soup, placeOf, places.size());
-  const std::vector<double> ranks = ranksOf(soup, places);
   Loop order(places.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return weights[a] != weights[b] ? weights[a] > weights[b] : ranks[a] < ranks[b];
+    return weights[a] != weights[b] ? weights[a] > weights[b] : rankOf(places[a]) < rankOf(places[b]);
   });
 
   NearPoints near(tolerances.weld_m);
@@ -301,8 +292,8 @@ Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts)
   }
   counts.pointsWelded += used - result.points.size();
   result.faces = soup.faces;
+  result.drawn = soup.drawn;
   result.displaced.resize(soup.faces.size());
-  result.bothWays.resize(soup.faces.size(), false);
   for (std::size_t face = 0; face < soup.faces.size(); ++face) {
     result.displaced[face] = std::ranges::any_of(soup.faces[face], [&](std::uint32_t corner) {
       return glm::length(result.points[renumbered[corner]] - onTheGrid[corner]) > tolerances.collinear_m;
@@ -335,6 +326,30 @@ void dropDegenerateFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts
   findings.tell("G201", "faces without area were dropped; the longest is named");
 }
 
+void sortFaces(Soup& soup, const NameRanks& ranks) {
+  Loop order(soup.faces.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const auto p = soup.faces[a];
+    const auto q = soup.faces[b];
+    if (!std::ranges::equal(p, q)) return std::ranges::lexicographical_compare(p, q);
+    const auto ranksOfFace = [&](std::uint32_t face) {
+      return std::tuple(ranks.material[soup.material[face]], ranks.object[soup.object[face]],
+                        bool{soup.displaced[face]});
+    };
+    return ranksOfFace(a) < ranksOfFace(b);
+  });
+  Soup sorted{std::move(soup.points), {}, {}, {}, {}, {}};
+  for (const std::uint32_t face : order) {
+    sorted.faces.add(soup.faces[face]);
+    sorted.material.push_back(soup.material[face]);
+    sorted.object.push_back(soup.object[face]);
+    sorted.drawn.push_back(soup.drawn[face]);
+    sorted.displaced.push_back(soup.displaced[face]);
+  }
+  soup = std::move(sorted);
+}
+
 void markDuplicates(std::vector<Footprint>& footprints, const NameRanks& ranks) {
   Loop order(footprints.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -344,39 +359,33 @@ void markDuplicates(std::vector<Footprint>& footprints, const NameRanks& ranks) 
     if (a.corners != b.corners) return a.corners < b.corners;
     if (a.material != b.material) return ranks.material[a.material] < ranks.material[b.material];
     if (a.object != b.object) return ranks.object[a.object] < ranks.object[b.object];
-    if (a.front != b.front) return a.front;
     return i < j;
   });
+  DrawnSides taken;
   for (std::size_t first = 0, end = 0; first < order.size(); first = end) {
-    Footprint* kept = nullptr;  // the last
-    bool isFrontTaken = false;
-    bool isBackTaken = false;
-    for (; end < order.size() && footprints[order[end]].corners == footprints[order[first]].corners; ++end) {
-      Footprint& footprint = footprints[order[end]];
-      const bool wantsFront = footprint.front || footprint.bothWays;
-      const bool wantsBack = !footprint.front || footprint.bothWays;
-      if (kept != nullptr && kept->material == footprint.material) {
-        footprint.isDrawnAlready = true;
-        kept->bothWays = kept->bothWays || footprint.bothWays || kept->front != footprint.front;
-      } else if ((isFrontTaken || !wantsFront) && (isBackTaken || !wantsBack)) {
-        footprint.isDrawnAlready = true;
-      } else {
-        footprint.front = wantsFront && !isFrontTaken;
-        kept = &footprint;
-      }
-      // A side that a dropped one has taken stays taken: what is drawn both ways has both.
-      isFrontTaken = isFrontTaken || wantsFront;
-      isBackTaken = isBackTaken || wantsBack;
+    Footprint& kept = footprints[order[first]];
+    if (first == 0 || footprints[order[first - 1]].corners != kept.corners) taken = {false, false};
+    for (end = first + 1; end < order.size(); ++end) {
+      Footprint& other = footprints[order[end]];
+      const bool isLike = other.material == kept.material && (kept.isGlass || other.object == kept.object);
+      if (other.corners != kept.corners || !isLike) break;
+      other.isDrawnAlready = true;
+      kept.drawn.front = kept.drawn.front || other.drawn.front;
+      kept.drawn.back = kept.drawn.back || other.drawn.back;
     }
+    const DrawnSides wanted = kept.drawn;
+    kept.drawn = {wanted.front && !taken.front, wanted.back && !taken.back};
+    kept.isDrawnAlready = !kept.drawn.front && !kept.drawn.back;
+    taken = {taken.front || wanted.front, taken.back || wanted.back};
   }
 }
 
-void dropDuplicateFaces(Soup& soup, const NameRanks& ranks, CleanupCounts& counts, Findings& findings) {
+void dropDuplicateFaces(Soup& soup, std::span<const Material> materials, const NameRanks& ranks,
+                        CleanupCounts& counts, Findings& findings) {
   std::vector<Footprint> footprints;
   for (std::size_t face = 0; face < soup.faces.size(); ++face) {
-    Footprint footprint{
-        Loop(soup.faces[face].begin(), soup.faces[face].end()), soup.material[face], soup.object[face],
-        canonicalSign(glm::normalize(doubleAreaVector(soup.points, soup.faces[face]))) > 0.0, false};
+    Footprint footprint{Loop(soup.faces[face].begin(), soup.faces[face].end()), soup.material[face],
+                        soup.object[face], materials[soup.material[face]].glazing, soup.drawn[face]};
     std::sort(footprint.corners.begin(), footprint.corners.end());
     footprints.push_back(std::move(footprint));
   }
@@ -386,7 +395,7 @@ void dropDuplicateFaces(Soup& soup, const NameRanks& ranks, CleanupCounts& count
       findings.note("G202", soup.points, corners, soup.object[face],
                     0.5 * glm::length(doubleAreaVector(soup.points, corners)));
     }
-    soup.bothWays[face] = footprints[face].bothWays;
+    soup.drawn[face] = footprints[face].drawn;
     return !footprints[face].isDrawnAlready;
   });
   counts.duplicateFaces += findings.count("G202");
@@ -400,8 +409,8 @@ void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& c
     result.faces.add(corners);
     result.material.push_back(soup.material[face]);
     result.object.push_back(soup.object[face]);
+    result.drawn.push_back(soup.drawn[face]);
     result.displaced.push_back(soup.displaced[face]);
-    result.bothWays.push_back(soup.bothWays[face]);
   };
   for (std::size_t face = 0; face < soup.faces.size(); ++face) {
     const Loop loop(soup.faces[face].begin(), soup.faces[face].end());
@@ -423,8 +432,8 @@ void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& c
   soup.faces = std::move(result.faces);
   soup.material = std::move(result.material);
   soup.object = std::move(result.object);
+  soup.drawn = std::move(result.drawn);
   soup.displaced = std::move(result.displaced);
-  soup.bothWays = std::move(result.bothWays);
   counts.nonPlanarFaces += findings.count("G203");
   const auto worst_mm = static_cast<long>(std::lround(worst_m * 1e3));
   findings.tell("G203", "non-planar faces were split into triangles; the worst leaves its plane by " +

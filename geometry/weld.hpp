@@ -17,21 +17,26 @@ Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts)
 /// Drops repeated corners and faces without area; starts every face at its smallest corner.
 void dropDegenerateFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts, Findings& findings);
 
+/// Puts faces in the order of their corners and names, of like ones those that the weld has not moved first:
+/// the file's is forgotten.
+void sortFaces(Soup& soup, const NameRanks& ranks);
+
 /// A face or polygon as far as its being drawn twice is concerned.
 struct Footprint {
   Loop corners;  ///< sorted
   std::uint32_t material, object;
-  bool front;     ///< its normal has the canonical sign
-  bool bothWays;  ///< drawn both ways: it takes both sides that are free, and is wound to one of them
+  bool isGlass;  ///< which has both sides, whatever objects it is of
+  DrawnSides drawn;
   bool isDrawnAlready = false;
 };
 
-/// Marks those that are drawn already: the same corners in the same material, or wound the same way in
-/// another. The first by names is kept; its winding and whether it is drawn both ways are set.
+/// Marks those that are drawn already: the same corners in the same material and object, or for the same
+/// sides in others. The first by names is kept, for those sides of all of its like that are free.
 void markDuplicates(std::vector<Footprint>& footprints, const NameRanks& ranks);
 
 /// Drops faces that are drawn twice.
-void dropDuplicateFaces(Soup& soup, const NameRanks& ranks, CleanupCounts& counts, Findings& findings);
+void dropDuplicateFaces(Soup& soup, std::span<const Material> materials, const NameRanks& ranks,
+                        CleanupCounts& counts, Findings& findings);
 
 /// Splits faces whose corners leave their plane into triangles.
 void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts, Findings& findings);

@@ -41,7 +41,7 @@ std::string leftOutText(const Scene& scene) {
 
 std::string lengthText(double metres) {
   char text[32];
-  std::snprintf(text, sizeof(text), "%.3g", metres);
+  std::snprintf(text, sizeof(text), metres < 100.0 ? "%.3g" : "%.0f", metres);
   return text;
 }
 

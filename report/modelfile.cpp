@@ -54,6 +54,7 @@ void addPieces(const Pieces& pieces, const std::vector<Surface>& surfaces, std::
       if (isNew) part.points.push_back(pieces.points[point]);
       corners.push_back(found->second);
     }
+    if (pieces.isDrawnForBack[piece]) std::reverse(corners.begin(), corners.end());
     part.polygons.add(corners);
   }
 }

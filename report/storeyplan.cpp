@@ -22,7 +22,8 @@ constexpr double largestScale = 90.0;  // pixels a metre
 constexpr std::array fills{"#cfe3f5", "#fbe3c0", "#d8efd0", "#f6d3d8", "#e5dbf3", "#fbf3b8", "#d0efec"};
 
 constexpr const char* style =
-    "<style>text{font:12px sans-serif;text-anchor:middle;fill:#222}.name{font-weight:bold;font-size:14px}"
+    "<style>text{font:12px sans-serif;text-anchor:middle;fill:#222;paint-order:stroke;stroke:#fff;"
+    "stroke-width:4px;stroke-opacity:.85;stroke-linejoin:round}.name{font-weight:bold;font-size:14px}"
     ".wall{stroke:#222;stroke-width:1.6}.thing{stroke:#aaa;stroke-width:.7}"
     ".pane{stroke:#0a6fd6;stroke-width:5;fill:#0a6fd6;fill-opacity:.25}"
     ".border{stroke:#d02020;stroke-width:3;stroke-dasharray:6 4}</style>\n";
@@ -150,8 +151,9 @@ std::string panesSvg(const Building& building, const Sheet& sheet) {
   }
   for (const RoomBorder& border : building.borders) {
     const auto a = static_cast<std::size_t>(border.rooms[0]);
-    if (std::find(sheet.rooms.begin(), sheet.rooms.end(), a) != sheet.rooms.end())
-      svg += sheet.line("border", border.from_m, border.to_m);
+    if (std::find(sheet.rooms.begin(), sheet.rooms.end(), a) == sheet.rooms.end()) continue;
+    for (std::size_t i = 1; i < border.line_m.size(); ++i)
+      svg += sheet.line("border", border.line_m[i - 1], border.line_m[i]);
   }
   return svg;
 }

@@ -88,6 +88,11 @@ inline Scene shuffled(const Scene& scene, unsigned seed) {
   return result;
 }
 
+/// Unit normal of the side that a piece was drawn for.
+inline glm::dvec3 drawnNormal(const CleanModel& model, std::size_t piece) {
+  return (model.pieces.isDrawnForBack[piece] ? -1.0 : 1.0) * model.pieces.normal[piece];
+}
+
 inline double totalArea_m2(const CleanModel& model) {
   double sum = 0.0;
   for (const double area : model.pieces.area_m2) sum += area;

@@ -79,7 +79,7 @@ TEST(Merge, MixedWindingMerges) {
   const CleanModel model = cleanScene(drawing.scene);
   ASSERT_EQ(model.pieces.size(), 1U);
   EXPECT_DOUBLE_EQ(model.pieces.area_m2[0], 5.0);
-  EXPECT_DOUBLE_EQ(model.pieces.normal[0].y, 1.0);  // the larger face's
+  EXPECT_DOUBLE_EQ(drawnNormal(model, 0).y, 1.0);  // the larger face's
 }
 
 TEST(Merge, FacesBentByTheWeldMergeWhetherTrianglesOrNot) {
@@ -156,7 +156,7 @@ TEST(Merge, WallDrawnBothWaysHasTheSidesThatAreLeft) {
     EXPECT_EQ(cleaned(other, 0, 2).pieces.size(), 1U);
     const CleanModel both = cleaned(other, 2, 0);
     ASSERT_EQ(both.pieces.size(), 2U);
-    EXPECT_NEAR(glm::dot(both.pieces.normal[0], both.pieces.normal[1]), -1.0, 1e-12);
+    EXPECT_NEAR(glm::dot(drawnNormal(both, 0), drawnNormal(both, 1)), -1.0, 1e-12);
   }
 }
 

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <string>
+
+#include <import/photometry.hpp>
 
 #include "../scenes.hpp"
 
@@ -65,10 +68,54 @@ TEST(Rooms, PartAtADoor) {
     }
     EXPECT_NEAR(floor_m2, 24.18, 1e-6);
     ASSERT_EQ(building.borders.size(), 1U);
-    EXPECT_NEAR(building.borders[0].from_m.x, 4.1, 1e-6);
-    EXPECT_NEAR(building.borders[0].to_m.x, 4.1, 1e-6);
-    EXPECT_NEAR(glm::length(building.borders[0].to_m - building.borders[0].from_m), 0.9, 1e-6);
+    const std::vector<glm::dvec3>& line_m = building.borders[0].line_m;
+    ASSERT_EQ(line_m.size(), 2U);
+    for (const glm::dvec3& end : line_m) EXPECT_NEAR(end.x, 4.1, 1e-6);
+    EXPECT_NEAR(glm::length(line_m[1] - line_m[0]), 0.9, 1e-6);
     EXPECT_NEAR(building.borders[0].height_m, height_m, 1e-6);
+  }
+}
+
+// What is found is told in the model's own axes, in which studies speak of places, and not in those that it
+// was looked at in.
+TEST(Rooms, AreToldInTheModelsAxes) {
+  for (const double angle_rad : {0.0, 0.7, 2.4, 4.0}) {
+    for (const bool isMirrored : {false, true}) {
+      SCOPED_TRACE(testing::Message() << angle_rad << " rad" << (isMirrored ? ", mirrored" : ""));
+      const auto placeOf = [&](const glm::dvec3& place) {
+        Scene point;
+        point.points = {place};
+        return turned(isMirrored ? mirrored(point) : point, angle_rad).points[0];
+      };
+      Drawing drawing = twoRooms(0.9, 2.05);
+      addBox(drawing, {7.4, 0.2, 0}, {8.1, 1.2, 1.1}, wood, 1);  // the same from no two sides
+      const Scene& drawn = drawing.scene;
+      const Scene scene = turned(isMirrored ? mirrored(drawn) : drawn, angle_rad);
+      LuminaireSettings lamp;
+      lamp.photometry = std::make_shared<const Photometry>(lambertianPhotometry(100.0));
+      lamp.position_m = placeOf({6.2, 1.1, 2.5});
+      lamp.aim = placeOf({1, 0, 0});
+      Study study;
+      study.luminaires = {lamp};
+      const Building building = buildingOf(scene, study);
+      ASSERT_EQ(building.luminaires.size(), 1U);
+      EXPECT_LT(glm::length(building.luminaires[0].position_m - lamp.position_m), 1e-12);
+      EXPECT_LT(glm::length(building.luminaires[0].axes[2] + lamp.aim), 1e-12);
+      ASSERT_EQ(building.rooms.size(), 2U);
+      EXPECT_EQ(building.luminaireDomain[0], building.rooms[0].domain);
+      // From south to north, then from west to east; the pane is the first drawn room's.
+      const glm::dvec3 lit = placeOf({2.0, 1.5, 0});
+      const glm::dvec3 other = placeOf({6.2, 1.5, 0});
+      const bool isFirst = std::abs(lit.y - other.y) > 0.1 ? lit.y < other.y : lit.x < other.x;
+      ASSERT_EQ(building.portals.size(), 1U);
+      EXPECT_EQ(building.portals[0].room, isFirst ? 0 : 1);
+      ASSERT_EQ(building.borders.size(), 1U);
+      std::vector<glm::dvec3> line_m = building.borders[0].line_m;
+      ASSERT_EQ(line_m.size(), 2U);
+      if (glm::length(line_m[0] - placeOf({4.1, 1.05, 0})) > 0.1) std::swap(line_m[0], line_m[1]);
+      EXPECT_LT(glm::length(line_m[0] - placeOf({4.1, 1.05, 0})), 1e-6);
+      EXPECT_LT(glm::length(line_m[1] - placeOf({4.1, 1.95, 0})), 1e-6);
+    }
   }
 }
 
@@ -104,6 +151,27 @@ TEST(Rooms, MeetAtTheEdgesOfTheirFloors) {
     EXPECT_NEAR(areas_m2[0], 1.9 * 1.8 - 0.06, 1e-6);
     EXPECT_NEAR(areas_m2[1], 4.1 * 1.8 - 0.06 - 0.155, 1e-6);
     EXPECT_NEAR(areas_m2[2], 6 * 2.2 - 0.155, 1e-6);
+  }
+}
+
+// A border round a kitchen's open corner is a line with a bend, to a cell of 5 cm.
+TEST(Rooms, BorderOfFloorsGoesRoundACorner) {
+  Drawing drawing;
+  addBox(drawing, {0, 0, 0}, {6, 4, 2.7}, plaster, 0, {0});
+  const std::uint32_t kitchen = addObject(drawing, "kitchen");
+  const std::uint32_t hall = addObject(drawing, "hall");
+  drawing.face({{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}}, wood, kitchen);
+  drawing.face({{3, 0, 0}, {6, 0, 0}, {6, 4, 0}, {0, 4, 0}, {0, 2, 0}, {3, 2, 0}}, wood, hall);
+  addBox(drawing, {2.95, 0, 0}, {3.05, 1.2, 2.7}, plaster, 0, {0, 1});
+  addBox(drawing, {0, 1.95, 0}, {2.2, 2.05, 2.7}, plaster, 0, {0, 1});
+  for (const Scene& scene : {drawing.scene, mirrored(drawing.scene)}) {
+    const Building building = buildingOf(scene);
+    EXPECT_EQ(building.rooms.size(), 2U);
+    ASSERT_EQ(building.borders.size(), 1U);
+    const std::vector<glm::dvec3>& line_m = building.borders[0].line_m;
+    ASSERT_EQ(line_m.size(), 3U);
+    EXPECT_NEAR(std::abs(line_m[1].x), 3.0, 0.06);
+    EXPECT_NEAR(line_m[1].y, 2.0, 0.06);
   }
 }
 

@@ -38,12 +38,16 @@ Scene cubeCage(Cage::Scheme scheme, double tolerance_m) {
   return scene;
 }
 
-/// Whether each edge is used once in each direction.
+/// Whether each edge is used once in each direction, as pieces were drawn.
 bool isClosed(const Pieces& pieces) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
   for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
     const auto loop = pieces.polygons[piece];
-    for (std::size_t i = 0; i < loop.size(); ++i) ++uses[{loop[i], loop[(i + 1) % loop.size()]}];
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const std::uint32_t from = loop[i];
+      const std::uint32_t to = loop[(i + 1) % loop.size()];
+      ++uses[pieces.isDrawnForBack[piece] ? std::pair(to, from) : std::pair(from, to)];
+    }
   }
   return std::ranges::all_of(uses, [&](const auto& use) {
     const auto twin = uses.find({use.first.second, use.first.first});

@@ -53,10 +53,14 @@ std::vector<Expected> expectedModels() {
   return {{"room-radiance-tutorial/rt_room.obj", "", 19, {398.894, 309.917, 3.117}, 1},
           {"room-sh3d-Studio/Studio_shell.obj", "y", 2980, {9.532, 6.812, 2.5}, 1},
           {"room-sh3d-Studio/Studio.obj", "y", 40973, {9.532, 6.812, 2.5}, 2},
+          {"room-sh3d-2BedroomApartment/2BedroomApartment_shell.obj", "y", 8529, {13.703, 10.36, 2.5}, 2},
+          {"room-sh3d-2BedroomApartment/2BedroomApartment.obj", "y", 79569, {13.703, 10.36, 2.5}, 2},
           {"room-duplex-ifc/duplex_webifc.obj", "y", 26774, {9.283, 26.566, 8.185}, 2},
+          {"room-duplex-ifc/duplex_assimp_ngons.obj", "y", 12718, {9.283, 26.565, 8.185}, 2},
           {"room-lbnl-openplan/frads_openplan.obj", "", 13966, {36.576, 29.465, 3.354}, 2},
           {"room-hotel-glb/hotel-room.glb", "", 99029, {6.483, 9.995, 2.197}, 0},
           {"room-honeybee/single_family_home.obj", "", 100, {18.981, 22.880, 4.0}, 1},
+          {"room-honeybee/model_complete_multi_zone_office.obj", "", 25, {10.0, 10.0, 9.0}, 1},
           {"../reference/refoffice/refoffice.obj", "", 14, {3.6, 8.5, 2.8}, 1},
           {"../reference/furnished/furnished.obj", "", 470, {3.6, 8.5, 2.8}, 1},
           {"../reference/floor/floor.obj", "", 5742, {22.1, 19.2, 2.8}, 1}};
@@ -87,6 +91,21 @@ INSTANTIATE_TEST_SUITE_P(Of, Models, testing::ValuesIn(expectedModels()), [](con
       name.begin(), name.end(), [](char c) { return c == '-' || c == '_'; }, '0');
   return name;
 });
+
+TEST(AllModels, KeepPolygonsOfManySides) {
+  if (std::string(CLERESTORY_MODELS).empty()) {
+    GTEST_SKIP() << "CLERESTORY_MODELS is not set";
+  }
+  const auto mostSides = [](const std::string& file) {
+    const Scene scene = readModel(std::filesystem::path(CLERESTORY_MODELS) / file, {});
+    std::size_t most = 0;
+    for (std::size_t face = 0; face < scene.faces.size(); ++face)
+      most = std::max(most, scene.faces[face].size());
+    return most;
+  };
+  EXPECT_EQ(mostSides("room-duplex-ifc/duplex_assimp_ngons.obj"), 90U);
+  EXPECT_EQ(mostSides("room-lbnl-openplan/frads_openplan.obj"), 64U);
+}
 
 /// Models that have no faces, by their stems, and what is said of them.
 std::string expectedRefusal(const std::string& stem) {

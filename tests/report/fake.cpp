@@ -26,6 +26,7 @@ std::uint32_t addPiece(CleanModel& model, const std::vector<glm::dvec3>& corners
   pieces.area_m2.push_back(area_m2);
   pieces.surface.push_back(surface);
   pieces.material.push_back(model.surfaces[surface].material);
+  pieces.isDrawnForBack.push_back(false);
   return static_cast<std::uint32_t>(pieces.size() - 1);
 }
 

@@ -23,7 +23,8 @@ struct Surface {
 };
 
 /// Welded, planar, convex polygons in a canonical order that does not depend on the file's.
-/// Piece i has two sides: side 2i looks along normal[i], side 2i + 1 against it.
+/// Piece i has two sides: side 2i, its front, looks along normal[i], side 2i + 1 against it. Which is which
+/// does not depend on how the piece was drawn.
 struct Pieces {
   std::vector<glm::dvec3> points;
   PolygonList polygons;            ///< counterclockwise seen from the front; convex
@@ -32,6 +33,7 @@ struct Pieces {
   std::vector<std::uint32_t> polygon;   ///< number of the planar polygon that it is a part of
   std::vector<std::uint32_t> surface;   ///< index into surfaces
   std::vector<std::uint32_t> material;  ///< index into the scene's materials
+  std::vector<bool> isDrawnForBack;     ///< drawn counterclockwise as seen from the back
 
   [[nodiscard]] std::size_t size() const { return polygons.size(); }
 };
@@ -105,7 +107,7 @@ struct Room {
 /// belongs to neither and both; light passes freely.
 struct RoomBorder {
   std::array<std::int32_t, 2> rooms;
-  glm::dvec3 from_m, to_m;  ///< at the floor
+  std::vector<glm::dvec3> line_m;  ///< at the floor: its ends, and corners where floors alone tell
   double height_m;
 };
 
