@@ -37,6 +37,7 @@ class DirectField {
  private:
   struct Shiner {
     std::span<const glm::vec3> polygon;
+    bool isParallelogram;
     glm::vec3 inward;
     std::uint32_t side;
     const Portal* portal;  ///< where it is one
@@ -59,8 +60,17 @@ class DirectField {
     std::vector<std::size_t> part;
     std::vector<float> weight;
     std::vector<RayScene::Segment> ray;
+
+    void reserve(std::size_t count) {
+      part.reserve(count);
+      weight.reserve(count);
+      ray.reserve(count);
+    }
   };
 
+  /// Calls visit(shiner, form factor) for all that shine on a point.
+  template <class Visit>
+  void forEachShiner(const glm::vec3& point, const glm::vec3& normal, const Visit& visit) const;
   [[nodiscard]] std::vector<Part> partsAt(const glm::vec3& point, const glm::vec3& normal) const;
   void sample(std::vector<Part>& parts, std::span<const std::uint32_t> counts, const glm::vec3& point,
               const glm::vec3& normal, std::uint64_t key) const;
