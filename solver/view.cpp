@@ -233,8 +233,8 @@ class Picture {
   /// What is seen of glass, and beyond it or where there is nothing.
   [[nodiscard]] glm::dvec3 openSeen(const Look& look) const {
     if (domain_ < 0) return {};
-    Columns<K> seen =
-        luminanceAlong(light_, domain_, looks_.eye(), look.direction, LightAsked::all).value_or(Columns<K>{});
+    Columns<K> seen = luminanceAlong(light_, domain_, looks_.eye(), look.direction, LightAsked::all, look.hit)
+                          .value_or(Columns<K>{});
     if (look.hit || world_.building.domains[static_cast<std::size_t>(domain_)].open)
       seen += world_.layout.template light<K>(
           world_.layout.sunColumn(), glm::dvec3(sunDiscLuminance(world_, looks_.eye(), look.direction)));
