@@ -98,33 +98,25 @@ DirectField<K>::DirectField(const SolvedLight<K>& light, std::int32_t domain)
 }
 
 template <int K>
-template <class Visit>
-void DirectField<K>::forEachShiner(const glm::vec3& point, const glm::vec3& normal,
-                                   const Visit& visit) const {
-  for (const Shiner& shiner : shiners_) {
-    if (glm::dot(point - shiner.polygon[0], shiner.inward) <= 0.0F) continue;
-    const float formFactor = pointToPolygon(point, normal, shiner.polygon);
-    if (formFactor > 0.0F) visit(shiner, formFactor);
-  }
-}
-
-template <int K>
-std::vector<typename DirectField<K>::Part> DirectField<K>::partsAt(const glm::vec3& point,
-                                                                   const glm::vec3& normal) const {
+std::vector<typename DirectField<K>::Part> DirectField<K>::partsOf(std::span<const float> formFactors) const {
   std::vector<Part> parts;
   parts.reserve(shiners_.size());
-  forEachShiner(point, normal, [&](const Shiner& shiner, float formFactor) {
-    parts.push_back({&shiner, formFactor, 0, {}, 0.0F, 0.0F, 0.0F});
-  });
+  for (std::size_t i = 0; i < shiners_.size(); ++i) {
+    if (formFactors[i] > 0.0F) parts.push_back({&shiners_[i], formFactors[i], 0, {}, 0.0F, 0.0F, 0.0F});
+  }
   return parts;
 }
 
 template <int K>
-Columns<K> DirectField<K>::unhidden(const glm::vec3& point, const glm::vec3& normal) const {
+Columns<K> DirectField<K>::unhidden(const glm::vec3& point, const glm::vec3& normal,
+                                    std::span<float> formFactors) const {
   Columns<K> sum_lx;
-  forEachShiner(point, normal, [&](const Shiner& shiner, float formFactor) {
-    sum_lx += std::numbers::pi_v<float> * formFactor * shiner.luminance_cd_m2;
-  });
+  for (std::size_t i = 0; i < shiners_.size(); ++i) {
+    const Shiner& shiner = shiners_[i];
+    const bool mayShine = glm::dot(point - shiner.polygon[0], shiner.inward) > 0.0F;
+    formFactors[i] = mayShine ? pointToPolygon(point, normal, shiner.polygon) : 0.0F;
+    if (formFactors[i] > 0.0F) sum_lx += std::numbers::pi_v<float> * formFactors[i] * shiner.luminance_cd_m2;
+  }
   for (const Lamp& lamp : world_.lamps) {
     if (lamp.domain() != domain_) continue;
     sum_lx += world_.layout.template light<K>(
@@ -255,9 +247,10 @@ float DirectField<K>::grainOf(const Part& part) const {
 }
 
 template <int K>
-MeasuredLight<K> DirectField<K>::light(const glm::vec3& point, const glm::vec3& normal, float rays,
-                                       float deviationMost, float known_lx, std::uint64_t key) const {
-  std::vector<Part> parts = partsAt(point, normal);
+MeasuredLight<K> DirectField<K>::light(const glm::vec3& point, const glm::vec3& normal,
+                                       std::span<const float> formFactors, float rays, float deviationMost,
+                                       float known_lx, std::uint64_t key) const {
+  std::vector<Part> parts = partsOf(formFactors);
   float all = 0.0F;
   for (const Part& part : parts) all += part.formFactor * part.shiner->strength;
   std::vector<std::uint32_t> counts;

@@ -30,12 +30,16 @@ class DirectGather {
  public:
   DirectGather(const SolvedLight<K>& light, const DirectMeasure& measure, ViewSamples<K>& samples)
       : layout_(light.world().layout), settings_(measure), samples_(samples) {
+    firstFormFactor_.assign(1, 0);
     for (const ViewSample<K>& sample : samples_.all) {
-      if (!fields_.contains(sample.domain)) fields_.try_emplace(sample.domain, light, sample.domain);
+      const auto field = fields_.try_emplace(sample.domain, light, sample.domain).first;
+      firstFormFactor_.push_back(firstFormFactor_.back() + field->second.shiners());
     }
+    formFactors_.resize(firstFormFactor_.back());
     forEachIndex(samples_.all.size(), 64, [&](std::size_t s) {
       ViewSample<K>& own = samples_.all[s];
-      own.unhidden_lx = fields_.at(own.domain).unhidden(own.point + rayOffset_m * own.normal, own.normal);
+      own.unhidden_lx =
+          fields_.at(own.domain).unhidden(own.point + rayOffset_m * own.normal, own.normal, formFactorsOf(s));
     });
   }
 
@@ -160,12 +164,17 @@ class DirectGather {
             glm::vec3(kind(layout_.skyColumn()), kind(layout_.sunColumn()), kind(layout_.electricColumn()))};
   }
 
+  [[nodiscard]] std::span<float> formFactorsOf(std::size_t s) {
+    return std::span(formFactors_)
+        .subspan(firstFormFactor_[s], firstFormFactor_[s + 1] - firstFormFactor_[s]);
+  }
+
   void measure(std::size_t s, float rays) {
     ViewSample<K>& own = samples_.all[s];
     const auto [direct, grain_lx] =
         fields_.at(own.domain)
-            .light(own.point + rayOffset_m * own.normal, own.normal, rays, settings_.deviationMost,
-                   layout_.strength(own.reflected_lx), mixKeys(0x71e, s));
+            .light(own.point + rayOffset_m * own.normal, own.normal, formFactorsOf(s), rays,
+                   settings_.deviationMost, layout_.strength(own.reflected_lx), mixKeys(0x71e, s));
     for (int c = 0; c < K; ++c)
       own.share[c] = own.unhidden_lx[c] > 0.0F ? direct.illuminance_lx[c] / own.unhidden_lx[c] : 0.0F;
     own.deviation_lx = direct.deviation_lx;
@@ -273,6 +282,8 @@ class DirectGather {
   DirectMeasure settings_;
   ViewSamples<K>& samples_;
   std::map<std::int32_t, DirectField<K>> fields_;  // by domain
+  std::vector<float> formFactors_;                 // of each sample, to all that shines in its domain
+  std::vector<std::size_t> firstFormFactor_;       // of a sample, and one past the last
 };
 
 }  // namespace
