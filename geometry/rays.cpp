@@ -170,11 +170,11 @@ RayScene::Hit RayScene::nearest(const glm::vec3& from, const glm::vec3& directio
   return embree_->hitOf(triangles.owner[query.hit.primID], query.ray.tfar, direction);
 }
 
-void RayScene::nearest(std::span<const Ray> rays, Barrier barrier, std::span<Hit> hits) const {
+void RayScene::nearest(std::span<const Ray> rays, Barrier barrier, std::span<Hit> hits, Course course) const {
   const TriangleScene& triangles = embree_->of(barrier);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  if (course == Course::alike) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   for (std::size_t first = 0; first < rays.size(); first += packetWidth) {
     const std::size_t count = std::min(packetWidth, rays.size() - first);
     alignas(32) RTCRayHit8 query{};

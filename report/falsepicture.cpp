@@ -63,24 +63,20 @@ std::string numberOf(double value) {
 }
 
 void paintValues(DisplayImage& image, std::span<const float> values, int height, const ValueScale& scale) {
-  const int width = image.width;
-  const auto at = [&](int x, int y) { return values[static_cast<std::size_t>(y * width + x)]; };
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const float value = at(x, y);
-      const bool isShown = !std::isnan(value);
-      image.fill(x, y, x + 1.0, y + 1.0,
-                 isShown ? falseColour(scale.fraction(static_cast<double>(value))) : nothing);
-    }
+  const auto width = static_cast<std::size_t>(image.width);
+  const std::size_t count = width * static_cast<std::size_t>(height);
+  std::vector<std::ptrdiff_t> bands(count, -1);  // -1 where nothing is shown
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool isShown = !std::isnan(values[i]);
+    if (isShown) bands[i] = bandOf(scale, values[i]);
+    image.set(i, isShown ? falseColour(scale.fraction(static_cast<double>(values[i]))) : nothing);
   }
-  for (int y = 0; y + 1 < height; ++y) {
-    for (int x = 0; x + 1 < width; ++x) {
-      const std::ptrdiff_t band = bandOf(scale, at(x, y));
-      for (const float other : {at(x + 1, y), at(x, y + 1)}) {
-        if (std::isnan(at(x, y)) || std::isnan(other) || band == bandOf(scale, other)) continue;
-        const bool isBright = scale.fraction(static_cast<double>(other)) > 0.5;
-        image.fill(x, y, x + 1.0, y + 1.0, isBright ? ink : paper);
-      }
+  for (std::size_t i = 0; i + width < count; ++i) {
+    if (i % width + 1 == width || bands[i] < 0) continue;
+    for (const std::size_t other : {i + 1, i + width}) {
+      if (bands[other] < 0 || bands[other] == bands[i]) continue;
+      const bool isBright = scale.fraction(static_cast<double>(values[other])) > 0.5;
+      image.set(i, isBright ? ink : paper);
     }
   }
 }

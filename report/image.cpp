@@ -131,9 +131,11 @@ void writePng16(const std::filesystem::path& file, const std::vector<float>& val
                                            {{"oiio:ColorSpace", "sRGB"}, {"Software", "Clerestory"}}));
 }
 
-void writePng(const std::filesystem::path& file, const DisplayImage& image) {
-  throwIf(file, pictureFiles().writeBytes(file, image.width, image.height, image.bytes.data(),
-                                          {{"oiio:ColorSpace", "sRGB"}, {"Software", "Clerestory"}}));
+void writePng(const std::filesystem::path& file, const DisplayImage& image, Shades shades) {
+  PictureFiles::Attributes attributes = {{"oiio:ColorSpace", "sRGB"}, {"Software", "Clerestory"}};
+  // PNG_FILTER_NONE: differences of neighbours hide from the compression that they are the same.
+  if (shades == Shades::flat) attributes.emplace_back("png:filter", 8);
+  throwIf(file, pictureFiles().writeBytes(file, image.width, image.height, image.bytes.data(), attributes));
 }
 
 void drawText(DisplayImage& image, int x, int y, const std::string& text, int size_px,

@@ -2,6 +2,7 @@
 // Pictures: exposure and files.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -24,6 +25,10 @@ struct DisplayImage {
   DisplayImage(int width_px, int height_px, const DisplayColour& colour);
   /// Fills the pixels whose centres lie in [x0, x1) × [y0, y1); what lies outside the picture is left out.
   void fill(double x0, double y0, double x1, double y1, const DisplayColour& colour);
+  /// Sets one pixel, counted along rows.
+  void set(std::size_t pixel, const DisplayColour& colour) {
+    for (std::size_t c = 0; c < 3; ++c) bytes[3 * pixel + c] = colour[c];
+  }
 };
 
 /// What a luminance of 1 cd/m² becomes in the picture's scene-linear values, where 0.18 is a middle grey.
@@ -48,8 +53,11 @@ void writeExr(const std::filesystem::path& file, const LuminanceImage& image, co
 /// Display values with 16 bits each. Throws MachineError.
 void writePng16(const std::filesystem::path& file, const std::vector<float>& values, int width, int height);
 
+/// What a picture is made of, for its compression: shades that run into each other, or few colours.
+enum class Shades { smooth, flat };
+
 /// Throws MachineError.
-void writePng(const std::filesystem::path& file, const DisplayImage& image);
+void writePng(const std::filesystem::path& file, const DisplayImage& image, Shades shades);
 
 /// Writes ASCII text around the baseline y.
 void drawText(DisplayImage& image, int x, int y, const std::string& text, int size_px,

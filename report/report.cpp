@@ -56,7 +56,7 @@ void writeDisplayed(const fs::path& folder, const ReportInput& input, const Disp
   const fs::path png = folder / ("view-" + view.fileName + ".png");
   const std::vector<float> values =
       displayValues(input.solution.views[view.index], 1.0 / view.white_cd_m2, display);
-  writePng(png, displayImage(values, view.width, view.height));
+  writePng(png, displayImage(values, view.width, view.height), Shades::smooth);
   view.png = readFile(png);
   if (input.study.views[view.index].pngBits == 16) writePng16(png, values, view.width, view.height);
 }
@@ -75,7 +75,7 @@ struct FalseColours {
   [[nodiscard]] std::string write(const fs::path& folder, const PageView& view, std::size_t v) const {
     if (values[v].empty()) return {};
     const fs::path file = folder / (kind + "-" + view.fileName + ".png");
-    writePng(file, falsePicture(values[v], view.width, view.height, scale, title));
+    writePng(file, falsePicture(values[v], view.width, view.height, scale, title), Shades::flat);
     return readFile(file);
   }
 };
@@ -121,7 +121,7 @@ std::vector<std::string> writePlans(const fs::path& folder, const ReportInput& i
   forEachIndex(files.size(), 1, [&](std::size_t g) {
     const fs::path file = folder / ("plan-" + files[g] + ".png");
     const bool isDrawn = input.building.grids[g].points.size() <= mostDrawnSensors;
-    if (input.pictures || !isDrawn) writePng(file, planPicture(input, g, scale));
+    if (input.pictures || !isDrawn) writePng(file, planPicture(input, g, scale), Shades::flat);
     if (!isDrawn) pictures[g] = readFile(file);
   });
   return pictures;

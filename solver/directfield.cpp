@@ -48,17 +48,19 @@ Columns<K> meanLuminance(const SolvedLight<K>& light, std::uint32_t side, std::s
   return (std::numbers::inv_pi_v<float> / static_cast<float>(points)) * sum;
 }
 
+bool isParallelogram(std::span<const glm::vec3> polygon) {
+  if (polygon.size() != 4) return false;
+  const glm::vec3 side = polygon[1] - polygon[0];
+  const glm::vec3 rise = polygon[3] - polygon[0];
+  return glm::distance(polygon[2], polygon[1] + rise) < 1e-3F * glm::length(side + rise);
+}
+
 /// A point of the convex `polygon`, uniform by area for uniform u, v in [0, 1). In a parallelogram u and v
 /// run along its sides, so that points are even along each by itself: of a strip along a side, as the sky
 /// between an overhang and a sill, n of them are off by about 1/n, and not by the n^(-3/4) of a fan of
 /// triangles.
-glm::vec3 pointOf(std::span<const glm::vec3> polygon, float u, float v) {
-  if (polygon.size() == 4) {
-    const glm::vec3 side = polygon[1] - polygon[0];
-    const glm::vec3 rise = polygon[3] - polygon[0];
-    const float off = glm::distance(polygon[2], polygon[1] + rise);
-    if (off < 1e-3F * glm::length(side + rise)) return polygon[0] + u * side + v * rise;
-  }
+glm::vec3 pointOf(std::span<const glm::vec3> polygon, bool isParallelogram, float u, float v) {
+  if (isParallelogram) return polygon[0] + u * (polygon[1] - polygon[0]) + v * (polygon[3] - polygon[0]);
   return pointOnPolygon<glm::vec3>(polygon, u, v);
 }
 
@@ -68,6 +70,7 @@ template <int K>
 DirectField<K>::DirectField(const SolvedLight<K>& light, std::int32_t domain)
     : light_(light), world_(light.world()), domain_(domain) {
   const auto add = [&](Shiner shiner) {
+    shiner.isParallelogram = isParallelogram(shiner.polygon);
     shiner.strength = world_.layout.strength(shiner.luminance_cd_m2);
     if (shiner.strength > 0.0F) shiners_.push_back(shiner);
   };
@@ -75,7 +78,7 @@ DirectField<K>::DirectField(const SolvedLight<K>& light, std::int32_t domain)
     if (portal.inside != domain) continue;
     const std::uint32_t side = 2 * portal.piece + (portal.frontIsInside ? 0U : 1U);
     const glm::vec3 inward = world_.normalOf(side);
-    add({world_.polygon(portal.piece), inward, side, &portal, false, mixKeys(0xd1f, side),
+    add({world_.polygon(portal.piece), false, inward, side, &portal, false, mixKeys(0xd1f, side),
          meanLuminance(light, portal, inward), 0.0F});
   }
   const Radiosity<K>* radiosity = light.of(domain);
@@ -83,35 +86,37 @@ DirectField<K>::DirectField(const SolvedLight<K>& light, std::int32_t domain)
   const Hierarchy& tree = radiosity->tree;
   for (const std::uint32_t i : radiosity->emitters) {
     const std::uint32_t side = tree.sides[i].side;
-    add({world_.polygon(side / 2), tree.sides[i].normal, side, nullptr, false, mixKeys(0xd1f, side),
+    add({world_.polygon(side / 2), false, tree.sides[i].normal, side, nullptr, false, mixKeys(0xd1f, side),
          std::numbers::inv_pi_v<float> * radiosity->exitance_lm_m2[i], 0.0F});
   }
   for (const BrightPart& part : radiosity->brightParts) {
     const std::uint32_t side = tree.sides[tree.treeSide[part.node]].side;
     const std::uint64_t key = mixKeys(0xd20, tree.key[part.node]);
-    add({tree.polygon(part.node), tree.normal(part.node), side, nullptr, true, key,
+    add({tree.polygon(part.node), false, tree.normal(part.node), side, nullptr, true, key,
          meanLuminance(light, side, tree.polygon(part.node), key), 0.0F});
   }
 }
 
 template <int K>
-std::vector<typename DirectField<K>::Part> DirectField<K>::partsAt(const glm::vec3& point,
-                                                                   const glm::vec3& normal) const {
+std::vector<typename DirectField<K>::Part> DirectField<K>::partsOf(std::span<const float> formFactors) const {
   std::vector<Part> parts;
   parts.reserve(shiners_.size());
-  for (const Shiner& shiner : shiners_) {
-    if (glm::dot(point - shiner.polygon[0], shiner.inward) <= 0.0F) continue;
-    const float formFactor = pointToPolygon(point, normal, shiner.polygon);
-    if (formFactor > 0.0F) parts.push_back({&shiner, formFactor, 0, {}, 0.0F, 0.0F, 0.0F});
+  for (std::size_t i = 0; i < shiners_.size(); ++i) {
+    if (formFactors[i] > 0.0F) parts.push_back({&shiners_[i], formFactors[i], 0, {}, 0.0F, 0.0F, 0.0F});
   }
   return parts;
 }
 
 template <int K>
-Columns<K> DirectField<K>::unhidden(const glm::vec3& point, const glm::vec3& normal) const {
+Columns<K> DirectField<K>::unhidden(const glm::vec3& point, const glm::vec3& normal,
+                                    std::span<float> formFactors) const {
   Columns<K> sum_lx;
-  for (const Part& part : partsAt(point, normal))
-    sum_lx += std::numbers::pi_v<float> * part.formFactor * part.shiner->luminance_cd_m2;
+  for (std::size_t i = 0; i < shiners_.size(); ++i) {
+    const Shiner& shiner = shiners_[i];
+    const bool mayShine = glm::dot(point - shiner.polygon[0], shiner.inward) > 0.0F;
+    formFactors[i] = mayShine ? pointToPolygon(point, normal, shiner.polygon) : 0.0F;
+    if (formFactors[i] > 0.0F) sum_lx += std::numbers::pi_v<float> * formFactors[i] * shiner.luminance_cd_m2;
+  }
   for (const Lamp& lamp : world_.lamps) {
     if (lamp.domain() != domain_) continue;
     sum_lx += world_.layout.template light<K>(
@@ -130,11 +135,20 @@ void DirectField<K>::sample(std::vector<Part>& parts, std::span<const std::uint3
   Probes toPortals;
   Probes toEmitters;
   Probes toBrightParts;
+  const auto probesOf = [&](const Shiner& shiner) -> Probes& {
+    return shiner.portal != nullptr ? toPortals : shiner.isBrightPart ? toBrightParts : toEmitters;
+  };
+  std::size_t portalRays = 0;
+  std::size_t otherRays = 0;
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    (parts[p].shiner->portal != nullptr ? portalRays : otherRays) += counts[p] - parts[p].rays;
+  toPortals.reserve(portalRays);
+  toEmitters.reserve(otherRays);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     Part& part = parts[p];
     if (counts[p] <= part.rays) continue;
     const Shiner& shiner = *part.shiner;
-    Probes& probes = shiner.portal != nullptr ? toPortals : shiner.isBrightPart ? toBrightParts : toEmitters;
+    Probes& probes = probesOf(shiner);
     const Sequence sequence(mixKeys(key, shiner.key));
     const float height_m = glm::dot(shiner.polygon[0] - point, shiner.inward);
     std::optional<SphericalPolygon> seen;
@@ -151,7 +165,7 @@ void DirectField<K>::sample(std::vector<Part>& parts, std::span<const std::uint3
         weight = approach < 0.0F ? glm::dot(direction, normal) : 0.0F;
         onPolygon = point + (height_m / approach) * direction;
       } else {
-        onPolygon = pointOf(shiner.polygon, sequence(i, 0), sequence(i, 1));
+        onPolygon = pointOf(shiner.polygon, shiner.isParallelogram, sequence(i, 0), sequence(i, 1));
         const glm::vec3 way = onPolygon - point;
         const float square = glm::dot(way, way);
         weight = -glm::dot(way, normal) * glm::dot(way, shiner.inward) / (square * square);
@@ -181,6 +195,8 @@ void DirectField<K>::sample(std::vector<Part>& parts, std::span<const std::uint3
                        std::span(blocked).first(toPortals.ray.size()));
   std::vector<std::size_t> open;
   std::vector<typename SolvedLight<K>::PanePoint> panes;
+  open.reserve(toPortals.ray.size());
+  panes.reserve(toPortals.ray.size());
   for (std::size_t i = 0; i < toPortals.ray.size(); ++i) {
     if (blocked[i] != 0) continue;
     open.push_back(i);
@@ -218,7 +234,7 @@ DirectLight<K> DirectField<K>::lightOf(const Part& part) const {
   const auto rays = static_cast<float>(part.rays);
   const float missed = part.shiner->portal != nullptr ? missedBetween * part.shiner->strength / rays : 0.0F;
   return {(scale / part.weights) * part.sum,
-          scale * std::hypot(std::sqrt(variance) / std::pow(rays, 0.75F), missed), part.rays};
+          scale * std::hypot(std::sqrt(variance / rays) / std::sqrt(std::sqrt(rays)), missed), part.rays};
 }
 
 // What rays bring anyway is in the deviation; a single one stands out where it brings more than twice that.
@@ -231,9 +247,10 @@ float DirectField<K>::grainOf(const Part& part) const {
 }
 
 template <int K>
-MeasuredLight<K> DirectField<K>::light(const glm::vec3& point, const glm::vec3& normal, float rays,
-                                       float deviationMost, float known_lx, std::uint64_t key) const {
-  std::vector<Part> parts = partsAt(point, normal);
+MeasuredLight<K> DirectField<K>::light(const glm::vec3& point, const glm::vec3& normal,
+                                       std::span<const float> formFactors, float rays, float deviationMost,
+                                       float known_lx, std::uint64_t key) const {
+  std::vector<Part> parts = partsOf(formFactors);
   float all = 0.0F;
   for (const Part& part : parts) all += part.formFactor * part.shiner->strength;
   std::vector<std::uint32_t> counts;

@@ -3,6 +3,7 @@
 // the share of that which arrives.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "direct.hpp"
@@ -23,20 +24,26 @@ class DirectField {
  public:
   DirectField(const SolvedLight<K>& light, std::int32_t domain);
 
+  /// Polygons that shine: how many form factors a point has.
+  [[nodiscard]] std::size_t shiners() const { return shiners_.size(); }
+
   /// Light at a point with unit `normal`, were nothing in the way and every polygon of its mean luminance.
   /// What arrives divided by this varies only where something casts a shadow, and slowly with the angle.
-  /// [lx]
-  [[nodiscard]] Columns<K> unhidden(const glm::vec3& point, const glm::vec3& normal) const;
+  /// `formFactors` (#shiners) receives those of the polygons, 0 where one does not shine there. [lx]
+  [[nodiscard]] Columns<K> unhidden(const glm::vec3& point, const glm::vec3& normal,
+                                    std::span<float> formFactors) const;
 
-  /// Light at a point by about `rays` rays, shared out by what each polygon would send unhidden; then by more
-  /// where its deviation is above `deviationMost` of all light, `known_lx` of other light among it. `key`
-  /// seeds them.
-  [[nodiscard]] MeasuredLight<K> light(const glm::vec3& point, const glm::vec3& normal, float rays,
-                                       float deviationMost, float known_lx, std::uint64_t key) const;
+  /// Light at a point of which `unhidden` has told the form factors, by about `rays` rays, shared out by what
+  /// each polygon would send unhidden; then by more where its deviation is above `deviationMost` of all
+  /// light, `known_lx` of other light among it. `key` seeds them.
+  [[nodiscard]] MeasuredLight<K> light(const glm::vec3& point, const glm::vec3& normal,
+                                       std::span<const float> formFactors, float rays, float deviationMost,
+                                       float known_lx, std::uint64_t key) const;
 
  private:
   struct Shiner {
     std::span<const glm::vec3> polygon;
+    bool isParallelogram;
     glm::vec3 inward;
     std::uint32_t side;
     const Portal* portal;  ///< where it is one
@@ -59,9 +66,15 @@ class DirectField {
     std::vector<std::size_t> part;
     std::vector<float> weight;
     std::vector<RayScene::Segment> ray;
+
+    void reserve(std::size_t count) {
+      part.reserve(count);
+      weight.reserve(count);
+      ray.reserve(count);
+    }
   };
 
-  [[nodiscard]] std::vector<Part> partsAt(const glm::vec3& point, const glm::vec3& normal) const;
+  [[nodiscard]] std::vector<Part> partsOf(std::span<const float> formFactors) const;
   void sample(std::vector<Part>& parts, std::span<const std::uint32_t> counts, const glm::vec3& point,
               const glm::vec3& normal, std::uint64_t key) const;
   [[nodiscard]] Columns<K> seenOfBrightPart(const Shiner& shiner, const RayScene::Segment& ray) const;

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -20,6 +21,7 @@ constexpr float offPlaneMost = 0.05F;  // of its radius
 constexpr float sameFacing = 0.95F;    // cosine between normals
 constexpr float slopeTie = 0.05F;      // of the squared radii
 constexpr std::uint32_t raysFirst = 64;
+constexpr std::uint32_t raysTogether = 32;
 constexpr float unevenMost = 8.0F;  // times as many rays, at most
 constexpr float evenVariance =
     1.0F;  // of what a record sees, by its squared mean; above it, it asks for more rays
@@ -49,21 +51,28 @@ IrradianceRecord<K> irradianceRecord(const SolvedLight<K>& light, std::int32_t d
   float counted = 0.0F;
   float nearness = 0.0F;
   float squares = 0.0F;
-  const auto castTo = [&](std::uint32_t first, std::uint32_t last) {
-    for (std::uint32_t i = first; i < last; ++i) {
-      const glm::vec3 direction = cosineDirection(normal, sequence(i, 0), sequence(i, 1));
-      float distance_m = 0.0F;
+  std::array<RayScene::Ray, raysTogether> rays;
+  std::array<RayScene::Hit, raysTogether> hits;
+  const auto castTogether = [&](std::uint32_t first, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i)
+      rays[i] = {from, cosineDirection(normal, sequence(first + i, 0), sequence(first + i, 1))};
+    light.world().rays.nearest(std::span(rays).first(count), RayScene::Barrier::opaqueAndGlass, hits,
+                               RayScene::Course::scattered);
+    for (std::uint32_t i = 0; i < count; ++i) {
       const auto seen =
-          luminanceAlong(light, domain, from, direction, LightAsked::reflectedEvenly, &distance_m);
-      nearness += 1.0F / std::max(distance_m, 1e-3F);
+          luminanceAlong(light, domain, from, rays[i].direction, LightAsked::reflectedEvenly, hits[i]);
+      nearness += 1.0F / std::max(hits[i].distance_m, 1e-3F);
       if (!seen) continue;
       sum += *seen;
       squares += layout.strength(*seen) * layout.strength(*seen);
       counted += 1.0F;
     }
   };
-  const auto radiusAfter = [&](std::uint32_t rays) {
-    return std::clamp(holdsFor * static_cast<float>(rays) / nearness, reach.least_m, reach.most_m);
+  const auto castTo = [&](std::uint32_t first, std::uint32_t last) {
+    for (; first < last; first += raysTogether) castTogether(first, std::min(raysTogether, last - first));
+  };
+  const auto radiusAfter = [&](std::uint32_t count) {
+    return std::clamp(holdsFor * static_cast<float>(count) / nearness, reach.least_m, reach.most_m);
   };
   castTo(0, raysFirst);
   const float share = radiusAfter(raysFirst) / reach.least_m;
@@ -73,10 +82,10 @@ IrradianceRecord<K> irradianceRecord(const SolvedLight<K>& light, std::int32_t d
   const float most = static_cast<float>(raysMost);
   const float wanted = std::min(static_cast<float>(raysFirst) * share * share, 0.5F * most) *
                        std::clamp(unevenness, 1.0F, unevenMost);
-  const auto rays = static_cast<std::uint32_t>(std::clamp(wanted, static_cast<float>(raysFirst), most));
-  castTo(raysFirst, rays);
+  const auto all = static_cast<std::uint32_t>(std::clamp(wanted, static_cast<float>(raysFirst), most));
+  castTo(raysFirst, all);
   const Columns<K> irradiance = counted > 0.0F ? (std::numbers::pi_v<float> / counted) * sum : Columns<K>{};
-  return {point, normal, domain, radiusAfter(rays), irradiance};
+  return {point, normal, domain, radiusAfter(all), irradiance};
 }
 
 template <int K>

@@ -134,8 +134,7 @@ template <int K>
 Columns<K> SolvedLight<K>::throughGlass(std::uint32_t piece, const glm::vec3& direction,
                                         const Columns<K>& outside_cd_m2) const {
   const float cosine = std::abs(glm::dot(direction, world_.normalOf(2 * piece)));
-  return world_.portalFactor(piece) * world_.glassOf(piece).transmittance(cosine) *
-         (world_.layout.template property<K>(world_.tintOf(piece)) * outside_cd_m2);
+  return world_.glassOf(piece).transmittance(cosine) * (paneFactor_[piece] * outside_cd_m2);
 }
 
 // What passes is scattered evenly over directions and over the pane: a mean over both.

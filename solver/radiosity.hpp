@@ -73,8 +73,14 @@ class SolvedLight {
   explicit SolvedLight(const World& world)
       : world_(world),
         rootOfSide_(2 * world.pieces().size(), noNode),
+        paneFactor_(world.pieces().size()),
         diffused_cd_m2_(world.pieces().size()),
-        domains_(world.building.domains.size()) {}
+        domains_(world.building.domains.size()) {
+    for (std::uint32_t piece = 0; piece < paneFactor_.size(); ++piece) {
+      if (!world.materialOf(piece).glazing) continue;
+      paneFactor_[piece] = world.portalFactor(piece) * world.layout.template property<K>(world.tintOf(piece));
+    }
+  }
 
   void add(std::int32_t domain, Radiosity<K> radiosity);
   [[nodiscard]] const Radiosity<K>* of(std::int32_t domain) const {
@@ -138,6 +144,7 @@ class SolvedLight {
 
   const World& world_;
   std::vector<NodeIndex> rootOfSide_;
+  std::vector<Columns<K>> paneFactor_;  // #pieces, of panes: tint, dirt and frames, beside the glass itself
   std::vector<Columns<K>> diffused_cd_m2_;  // #pieces, of scattering panes
   std::vector<std::optional<Radiosity<K>>> domains_;
 };

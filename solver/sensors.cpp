@@ -35,8 +35,15 @@ float doubtOf(const ColumnLayout& layout, const DirectLight<K>& own, float unhid
 
 template <int K>
 std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain,
+                                         const glm::vec3& from, const glm::vec3& direction, LightAsked what) {
+  return luminanceAlong(light, domain, from, direction, what,
+                        light.world().rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass));
+}
+
+template <int K>
+std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain,
                                          const glm::vec3& fromIn, const glm::vec3& directionIn,
-                                         LightAsked what, float* distance_m) {
+                                         LightAsked what, RayScene::Hit hit) {
   const World& world = light.world();
   const bool withDirect = what == LightAsked::all;
   Columns<K> sum;
@@ -44,8 +51,7 @@ std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32
   glm::vec3 from = fromIn;
   glm::vec3 direction = directionIn;
   for (int depth = 0; depth < mirrorDepth; ++depth) {
-    const auto hit = world.rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
-    if (depth == 0 && distance_m != nullptr) *distance_m = hit.distance_m;
+    if (depth > 0) hit = world.rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
     if (!hit) {
       // Only an open domain sees the sky without glass; in a closed one this is a leak.
       if (!world.building.domains[static_cast<std::size_t>(domain)].open) return std::nullopt;
@@ -240,11 +246,13 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
   return values;
 }
 
-#define CLERESTORY_INSTANTIATE(K)                                                                         \
-  template std::optional<Columns<K>> luminanceAlong<K>(                                                   \
-      const SolvedLight<K>&, std::int32_t, const glm::vec3&, const glm::vec3&, LightAsked, float*);       \
-  template Gathered<K> gather<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&, const glm::vec3&, \
-                                 const GatherSettings&, std::uint64_t, float);                            \
+#define CLERESTORY_INSTANTIATE(K)                                                                          \
+  template std::optional<Columns<K>> luminanceAlong<K>(const SolvedLight<K>&, std::int32_t,                \
+                                                       const glm::vec3&, const glm::vec3&, LightAsked);    \
+  template std::optional<Columns<K>> luminanceAlong<K>(                                                    \
+      const SolvedLight<K>&, std::int32_t, const glm::vec3&, const glm::vec3&, LightAsked, RayScene::Hit); \
+  template Gathered<K> gather<K>(const SolvedLight<K>&, std::int32_t, const glm::vec3&, const glm::vec3&,  \
+                                 const GatherSettings&, std::uint64_t, float);                             \
   template GridValues senseGrid<K>(const SolvedLight<K>&, const SensorGrid&, const GatherSettings&);
 CLERESTORY_STUDY_WIDTHS(CLERESTORY_INSTANTIATE)
 

@@ -44,12 +44,16 @@ enum class LightAsked {
 };
 
 /// Luminance along a ray in the air of a domain, glass seen through and mirrored in. [cd/m²]
-/// Nothing where the ray ends on a side that faces no solved air: in a crack. `distance_m` receives how far
-/// the first thing met is.
+/// Nothing where the ray ends on a side that faces no solved air: in a crack.
+template <int K>
+std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain,
+                                         const glm::vec3& from, const glm::vec3& direction, LightAsked what);
+
+/// The same for a ray of which it is known what it meets first.
 template <int K>
 std::optional<Columns<K>> luminanceAlong(const SolvedLight<K>& light, std::int32_t domain,
                                          const glm::vec3& from, const glm::vec3& direction, LightAsked what,
-                                         float* distance_m = nullptr);
+                                         RayScene::Hit hit);
 
 /// Values of a grid's sensors.
 template <int K>

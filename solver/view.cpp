@@ -51,7 +51,9 @@ class Picture {
         domain_(domainAt(world_, looks_.eye())) {
     gatherReflected(light_, settings.rays, samples_);
     gatherDirect(light_, {settings.directRays, settings.deviationMost}, samples_);
-    for (const ViewSample<K>& sample : samples_.all) irradiance_lx_.push_back(sample.irradiance_lx());
+    for (const ViewSample<K>& sample : samples_.all)
+      lit_.push_back({sample.pixel, 1.0F / sample.reach_px, sample.point, sample.normal,
+                      glm::vec3(world_.layout.totalColour(sample.irradiance_lx()))});
     lookThroughCorners();
   }
 
@@ -68,6 +70,20 @@ class Picture {
   struct Seen {
     glm::dvec3 luminance_cd_m2{0.0};
     double illuminance_lx = std::numeric_limits<double>::quiet_NaN();  ///< NaN: no surface
+  };
+
+  /// What pixels need of a sample, close together since they ask for it often.
+  struct Lit {
+    glm::vec2 pixel;
+    float perReach;  ///< 1/px
+    glm::vec3 point, normal;
+    glm::vec3 irradiance_lx;  ///< by all kinds of light, without the sun's beam
+  };
+
+  /// Light of a side that no sample is near, gathered for the rays of one pixel.
+  struct Spot {
+    std::uint32_t side;
+    glm::vec3 irradiance_lx;
   };
 
   /// What a ray through a corner of pixels meets: a lit surface, or none that would do for a whole pixel.
@@ -132,9 +148,10 @@ class Picture {
     double darkest = std::numeric_limits<double>::infinity();
     double brightest = 0.0;
     std::vector<std::uint32_t> sides;
+    std::vector<Spot> spotsMet;
     const auto add = [&](const Look& look) {
       sides.push_back(sideOf(look));
-      const Seen seen = seenAlong(look, mixKeys(key, looked++));
+      const Seen seen = seenAlong(look, mixKeys(key, looked++), spotsMet);
       sum += seen.luminance_cd_m2;
       const double luminance = luminanceOf(seen.luminance_cd_m2);
       darkest = std::min(darkest, luminance);
@@ -187,47 +204,53 @@ class Picture {
     return lampLuminance(world_, looks_.eye(), look.direction, look.hit.distance_m + 1e-3F);
   }
 
-  [[nodiscard]] Seen surfaceSeen(const RayScene::Hit& hit, Columns<K> irradiance,
-                                 const glm::vec3& beam_lx) const {
-    irradiance += world_.layout.template light<K>(world_.layout.sunColumn(), glm::dvec3(beam_lx));
-    const Columns<K> exitance =
-        world_.layout.template property<K>(world_.reflectanceOf(hit.piece)) * irradiance +
-        world_.layout.template light<K>(world_.layout.electricColumn(),
-                                        world_.materialOf(hit.piece).exitance_lm_m2);
-    return {std::numbers::inv_pi * world_.layout.totalColour(exitance),
-            luminanceOf(world_.layout.totalColour(irradiance))};
+  /// As the columns of a solve have it: of grey surfaces, all channels are one.
+  [[nodiscard]] glm::dvec3 inColumns(const glm::dvec3& colour) const {
+    return world_.layout.grey ? glm::dvec3(luminanceOf(colour)) : colour;
   }
 
-  [[nodiscard]] Seen seenAlong(const Look& look, std::uint64_t key) const {
+  /// Every kind of light is reflected alike, so their sum tells what is seen of a surface.
+  [[nodiscard]] Seen surfaceSeen(const RayScene::Hit& hit, const glm::vec3& irradiance_lx,
+                                 const glm::vec3& beam_lx) const {
+    const glm::dvec3 all_lx = glm::dvec3(irradiance_lx) + inColumns(glm::dvec3(beam_lx));
+    glm::dvec3 exitance_lm_m2 = inColumns(world_.reflectanceOf(hit.piece)) * all_lx;
+    if (world_.layout.electric) exitance_lm_m2 += inColumns(world_.materialOf(hit.piece).exitance_lm_m2);
+    return {std::numbers::inv_pi * exitance_lm_m2, luminanceOf(all_lx)};
+  }
+
+  [[nodiscard]] Seen seenAlong(const Look& look, std::uint64_t key, std::vector<Spot>& spotsMet) const {
     if (!look.isInPicture) return {};
     if (const auto lamp = lampOf(look)) return {*lamp};
     if (!looks_.isLit(look.hit)) return {openSeen(look)};
-    const std::int32_t domain = world_.building.sideDomain[look.hit.side()];
     const glm::vec3 point = looks_.pointOf(look);
     const glm::vec3 normal = world_.normalOf(look.hit.side());
-    std::optional<Columns<K>> irradiance = irradianceAt(
+    std::optional<glm::vec3> irradiance = irradianceAt(
         look.at.x, look.at.y, point, normal, look.hit.distance_m, std::abs(glm::dot(normal, look.direction)));
-    if (!irradiance) irradiance = irradianceOfSpot(domain, point, normal, key);
+    if (!irradiance) irradiance = irradianceOfSpot(look.hit.side(), point, normal, key, spotsMet);
     return surfaceSeen(look.hit, *irradiance, beamOn(look, key));
   }
 
   /// What is seen of glass, and beyond it or where there is nothing.
   [[nodiscard]] glm::dvec3 openSeen(const Look& look) const {
     if (domain_ < 0) return {};
-    Columns<K> seen =
-        luminanceAlong(light_, domain_, looks_.eye(), look.direction, LightAsked::all).value_or(Columns<K>{});
+    Columns<K> seen = luminanceAlong(light_, domain_, looks_.eye(), look.direction, LightAsked::all, look.hit)
+                          .value_or(Columns<K>{});
     if (look.hit || world_.building.domains[static_cast<std::size_t>(domain_)].open)
       seen += world_.layout.template light<K>(
           world_.layout.sunColumn(), glm::dvec3(sunDiscLuminance(world_, looks_.eye(), look.direction)));
     return world_.layout.totalColour(seen);
   }
 
-  /// Light of a point that no sample is near, for one ray of a pixel.
-  [[nodiscard]] Columns<K> irradianceOfSpot(std::int32_t domain, const glm::vec3& point,
-                                            const glm::vec3& normal, std::uint64_t key) const {
-    const Gathered<K> arriving =
-        gather(light_, domain, point + rayOffset_m * normal, normal, spotSettings, key);
-    return arriving.direct_lx + arriving.reflected_lx;
+  /// Light of a point that no sample is near: that of the first such point of its side in the pixel.
+  [[nodiscard]] glm::vec3 irradianceOfSpot(std::uint32_t side, const glm::vec3& point,
+                                           const glm::vec3& normal, std::uint64_t key,
+                                           std::vector<Spot>& spotsMet) const {
+    const auto known = std::ranges::find(spotsMet, side, &Spot::side);
+    if (known != spotsMet.end()) return known->irradiance_lx;
+    const Gathered<K> arriving = gather(light_, world_.building.sideDomain[side],
+                                        point + rayOffset_m * normal, normal, spotSettings, key);
+    const Columns<K> all_lx = arriving.direct_lx + arriving.reflected_lx;
+    return spotsMet.emplace_back(side, glm::vec3(world_.layout.totalColour(all_lx))).irradiance_lx;
   }
 
   /// The beam on a surface. Rounding puts some points at the edge of a ceiling or a wall outside, where
@@ -245,43 +268,47 @@ class Picture {
 
   /// Irradiance between the samples near a place of the picture that lie on the same surface. They lie
   /// further apart on a surface seen `aslant`, the cosine.
-  [[nodiscard]] std::optional<Columns<K>> irradianceAt(float x, float y, const glm::vec3& point,
-                                                       const glm::vec3& normal, float distance_m,
-                                                       float aslant) const {
+  [[nodiscard]] std::optional<glm::vec3> irradianceAt(float x, float y, const glm::vec3& point,
+                                                      const glm::vec3& normal, float distance_m,
+                                                      float aslant) const {
     const float tile_m =
         distance_m * tileSide_px * looks_.camera().pixelAngle();  // where it is seen squarely
     const float step_m = tile_m / std::max(aslant, 0.02F);
     const float farthest_m = std::max(0.05F * distance_m, std::min(2.0F * step_m, 0.3F * distance_m));
+    const float perThickness = 1.0F / (0.01F * distance_m);
     const int column = static_cast<int>(x) / tileSide_px;
     const int row = static_cast<int>(y) / tileSide_px;
-    Columns<K> sum;
+    glm::vec3 sum(0.0F);
     float weights = 0.0F;
+    const auto add = [&](const Lit& other) {
+      const float facing = glm::dot(other.normal, normal);
+      const glm::vec3 way = other.point - point;
+      if (facing < 0.7F || glm::dot(way, way) > farthest_m * farthest_m) return;
+      // Nothing at a tile's distance, so that no edges of tiles show.
+      const float tent = std::max(1.0F - std::abs(x - other.pixel.x) * other.perReach, 0.01F) *
+                         std::max(1.0F - std::abs(y - other.pixel.y) * other.perReach, 0.01F);
+      const float apart = std::abs(glm::dot(way, normal)) * perThickness + 1.0F - facing;
+      const float weight = apart > 1e-4F ? tent * std::exp(-4.0F * apart) : tent;
+      sum += weight * other.irradiance_lx;
+      weights += weight;
+    };
+    const int first = std::max(column - 1, 0);
+    const int last = std::min(column + 1, samples_.columns() - 1);
     for (int ny = std::max(row - 1, 0); ny <= std::min(row + 1, samples_.rows() - 1); ++ny) {
-      for (int nx = std::max(column - 1, 0); nx <= std::min(column + 1, samples_.columns() - 1); ++nx) {
-        for (const ViewSample<K>& other : samples_.in(nx, ny)) {
-          const float facing = glm::dot(other.normal, normal);
-          if (facing < 0.7F || glm::distance(other.point, point) > farthest_m) continue;
-          const float offPlane = std::abs(glm::dot(other.point - point, normal)) / (0.01F * distance_m);
-          // Nothing at a tile's distance, so that no edges of tiles show.
-          const float tent = std::max(1.0F - std::abs(x - other.pixel.x) / other.reach_px, 0.01F) *
-                             std::max(1.0F - std::abs(y - other.pixel.y) / other.reach_px, 0.01F);
-          const float apart = offPlane + 1.0F - facing;
-          const float weight = apart > 1e-4F ? tent * std::exp(-4.0F * apart) : tent;
-          sum += weight * irradiance_lx_[static_cast<std::size_t>(&other - samples_.all.data())];
-          weights += weight;
-        }
-      }
+      const std::size_t end = samples_.firstOf(samples_.tileAt(last, ny) + 1);
+      for (std::size_t s = samples_.firstOf(samples_.tileAt(first, ny)); s < end; ++s) add(lit_[s]);
     }
     if (weights < 1e-4F) return std::nullopt;
     return (1.0F / weights) * sum;
   }
+
   const SolvedLight<K>& light_;
   const World& world_;
   Looks<K> looks_;
   ViewSamples<K> samples_;
-  std::vector<Columns<K>> irradiance_lx_;  // #samples
-  std::vector<Corner> corners_;            // of pixels, one more in both directions
-  std::int32_t domain_;                    // that the eye is in
+  std::vector<Lit> lit_;         // #samples
+  std::vector<Corner> corners_;  // of pixels, one more in both directions
+  std::int32_t domain_;          // that the eye is in
 };
 
 }  // namespace

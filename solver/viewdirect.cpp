@@ -2,6 +2,7 @@
 // Chooses where direct light is measured, and filters what was measured along surfaces.
 #include "viewdirect.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <limits>
@@ -21,6 +22,7 @@ constexpr float raysOfSure = 2.0F;        // times as many as were asked for: no
 constexpr float unevenMost = 0.02F;       // of all light, between points that another lies between
 constexpr float noiseMost = 3.0F;         // deviations that light may be off without being an outlier
 constexpr float deviationOfGrain = 0.5F;  // of what one ray brings by chance: it meets the thing or not
+constexpr float apartMost = 20.0F;        // above it a weight of e^-apart is nothing
 constexpr int smoothingSteps = 4;         // each doubles the reach: 30 tiles after four
 
 template <int K>
@@ -28,12 +30,16 @@ class DirectGather {
  public:
   DirectGather(const SolvedLight<K>& light, const DirectMeasure& measure, ViewSamples<K>& samples)
       : layout_(light.world().layout), settings_(measure), samples_(samples) {
+    firstFormFactor_.assign(1, 0);
     for (const ViewSample<K>& sample : samples_.all) {
-      if (!fields_.contains(sample.domain)) fields_.try_emplace(sample.domain, light, sample.domain);
+      const auto field = fields_.try_emplace(sample.domain, light, sample.domain).first;
+      firstFormFactor_.push_back(firstFormFactor_.back() + field->second.shiners());
     }
+    formFactors_.resize(firstFormFactor_.back());
     forEachIndex(samples_.all.size(), 64, [&](std::size_t s) {
       ViewSample<K>& own = samples_.all[s];
-      own.unhidden_lx = fields_.at(own.domain).unhidden(own.point + rayOffset_m * own.normal, own.normal);
+      own.unhidden_lx =
+          fields_.at(own.domain).unhidden(own.point + rayOffset_m * own.normal, own.normal, formFactorsOf(s));
     });
   }
 
@@ -118,7 +124,7 @@ class DirectGather {
     std::vector<Lit> smoothed(lit.size());
     for (std::size_t s = 0; s < lit.size(); ++s) {
       const ViewSample<K>& own = samples_.all[s];
-      lit[s] = {own.point, own.normal, own.domain, own.deviation_lx, own.share * own.unhidden_lx};
+      lit[s] = litBy(own, own.deviation_lx, own.share * own.unhidden_lx);
     }
     for (int step = 0; step < smoothingSteps; ++step) {
       samples_.forEach([&](std::size_t tile, std::size_t s) {
@@ -142,14 +148,33 @@ class DirectGather {
     std::int32_t domain;
     float deviation_lx;
     Columns<K> direct_lx;
+    glm::vec3 kinds_lx;  ///< illuminance by each kind of light, of which one tells how far two are apart
   };
+
+  /// A sample, or what smoothing has made of it.
+  [[nodiscard]] Lit litBy(const auto& of, float deviation_lx, const Columns<K>& direct_lx) const {
+    const auto kind = [&](int column) {
+      return static_cast<float>(luminanceOf(layout_.colourOf(direct_lx, column)));
+    };
+    return {of.point,
+            of.normal,
+            of.domain,
+            deviation_lx,
+            direct_lx,
+            glm::vec3(kind(layout_.skyColumn()), kind(layout_.sunColumn()), kind(layout_.electricColumn()))};
+  }
+
+  [[nodiscard]] std::span<float> formFactorsOf(std::size_t s) {
+    return std::span(formFactors_)
+        .subspan(firstFormFactor_[s], firstFormFactor_[s + 1] - firstFormFactor_[s]);
+  }
 
   void measure(std::size_t s, float rays) {
     ViewSample<K>& own = samples_.all[s];
     const auto [direct, grain_lx] =
         fields_.at(own.domain)
-            .light(own.point + rayOffset_m * own.normal, own.normal, rays, settings_.deviationMost,
-                   layout_.strength(own.reflected_lx), mixKeys(0x71e, s));
+            .light(own.point + rayOffset_m * own.normal, own.normal, formFactorsOf(s), rays,
+                   settings_.deviationMost, layout_.strength(own.reflected_lx), mixKeys(0x71e, s));
     for (int c = 0; c < K; ++c)
       own.share[c] = own.unhidden_lx[c] > 0.0F ? direct.illuminance_lx[c] / own.unhidden_lx[c] : 0.0F;
     own.deviation_lx = direct.deviation_lx;
@@ -230,10 +255,12 @@ class DirectGather {
       if (facing < 0.9F || other.domain != own.domain) return;
       const float offPlane = std::abs(glm::dot(other.point - own.point, own.normal)) / thickness_m;
       if (offPlane > 4.0F) return;
-      Columns<K> apart = other.direct_lx - own.direct_lx;
-      for (int c = 0; c < K; ++c) apart[c] = std::abs(apart[c]);
-      const float step = layout_.strength(apart) / (3.0F * (own.deviation_lx + other.deviation_lx) + 1e-6F);
-      const float weight = nearness * std::exp(-offPlane - 32.0F * (1.0F - facing) - step * step);
+      const glm::vec3 apart_lx = glm::abs(other.kinds_lx - own.kinds_lx);
+      const float step = std::max({apart_lx.x, apart_lx.y, apart_lx.z}) /
+                         (3.0F * (own.deviation_lx + other.deviation_lx) + 1e-6F);
+      const float apart = offPlane + 32.0F * (1.0F - facing) + step * step;
+      if (apart > apartMost) return;
+      const float weight = nearness * std::exp(-apart);
       sum += weight * other.direct_lx;
       weights += weight;
       variance += weight * weight * other.deviation_lx * other.deviation_lx;
@@ -248,13 +275,15 @@ class DirectGather {
           add(lit[s], kernel[std::abs(dx)] * kernel[std::abs(dy)]);
       }
     }
-    return {own.point, own.normal, own.domain, std::sqrt(variance) / weights, (1.0F / weights) * sum};
+    return litBy(own, std::sqrt(variance) / weights, (1.0F / weights) * sum);
   }
 
   const ColumnLayout& layout_;
   DirectMeasure settings_;
   ViewSamples<K>& samples_;
   std::map<std::int32_t, DirectField<K>> fields_;  // by domain
+  std::vector<float> formFactors_;                 // of each sample, to all that shines in its domain
+  std::vector<std::size_t> firstFormFactor_;       // of a sample, and one past the last
 };
 
 }  // namespace

@@ -172,6 +172,8 @@ oiio::ImageSpec specOf(int width, int height, oiio::TypeDesc type,
   for (const auto& [name, value] : attributes) {
     if (const auto* text = std::get_if<std::string>(&value)) {
       spec.attribute(name, *text);
+    } else if (const auto* whole = std::get_if<int>(&value)) {
+      spec.attribute(name, *whole);
     } else if (const auto* number = std::get_if<float>(&value)) {
       spec.attribute(name, *number);
     } else {

@@ -39,7 +39,7 @@ enum class TextAlign { left, centre, right };
 struct PictureFiles {
   /// Metadata of a file: its name and value, as OpenImageIO knows them.
   using Attributes =
-      std::vector<std::pair<std::string, std::variant<std::string, float, std::vector<float>>>>;
+      std::vector<std::pair<std::string, std::variant<std::string, int, float, std::vector<float>>>>;
 
   /// PNG, JPEG, WebP, BMP, TGA and HDR; `name` is for its ending and for
   /// messages.
