@@ -317,34 +317,38 @@ Spots spotsOn(std::span<const glm::vec3> polygon, std::uint64_t key) {
   return spots;
 }
 
-Halves halve(const ElementShape& element, const glm::vec3& normal) {
-  // The frame of the longest edge; the cut runs across the longer of the two extents.
-  const auto& corners = element.corners;
-  glm::vec3 along(0.0F);
+Extents extentsOf(std::span<const glm::vec3> polygon, const glm::vec3& normal) {
+  Extents extents{};
   float longest = 0.0F;
-  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
-    const glm::vec3 edge = corners[i] - corners[j];
+  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+    const glm::vec3 edge = polygon[i] - polygon[j];
     const float length = glm::length(edge);
     if (length > longest * 1.0001F) {  // nearly equal edges: the first, whatever the rounding
       longest = length;
-      along = edge / length;
+      extents.along = edge / length;
     }
   }
-  const glm::vec3 across = glm::cross(normal, along);
-  const auto extent = [&](const glm::vec3& axis) {
-    float low = std::numeric_limits<float>::max();
-    float high = -low;
-    for (const glm::vec3& corner : corners) {
-      low = std::min(low, glm::dot(corner, axis));
-      high = std::max(high, glm::dot(corner, axis));
+  extents.across = glm::cross(normal, extents.along);
+  const auto rangeOn = [&](const glm::vec3& axis) {
+    glm::vec2 range(std::numeric_limits<float>::max(), -std::numeric_limits<float>::max());
+    for (const glm::vec3& corner : polygon) {
+      range[0] = std::min(range[0], glm::dot(corner, axis));
+      range[1] = std::max(range[1], glm::dot(corner, axis));
     }
-    return std::pair(low, high);
+    return range;
   };
-  const auto [alongLow, alongHigh] = extent(along);
-  const auto [acrossLow, acrossHigh] = extent(across);
-  const bool cutAlong = alongHigh - alongLow >= acrossHigh - acrossLow;
-  const glm::vec3 axis = cutAlong ? along : across;
-  const float middle = cutAlong ? 0.5F * (alongLow + alongHigh) : 0.5F * (acrossLow + acrossHigh);
+  extents.alongRange_m = rangeOn(extents.along);
+  extents.acrossRange_m = rangeOn(extents.across);
+  return extents;
+}
+
+Halves halve(const ElementShape& element, const glm::vec3& normal, Extent cut) {
+  const auto& corners = element.corners;
+  const Extents extents = extentsOf(corners, normal);
+  const bool cutAlong = (extents.along_m() >= extents.across_m()) == (cut == Extent::longer);
+  const glm::vec3& axis = cutAlong ? extents.along : extents.across;
+  const glm::vec2& range = cutAlong ? extents.alongRange_m : extents.acrossRange_m;
+  const float middle = 0.5F * (range[0] + range[1]);
 
   Halves halves;
   halves.plane = glm::vec4(axis, -middle);

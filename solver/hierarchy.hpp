@@ -4,9 +4,11 @@
 #pragma once
 
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -78,6 +80,10 @@ class Hierarchy {
   /// Of the trunk's nodes: area seen from +x -x +y -y +z -z were nothing hidden.
   std::vector<std::array<float, 6>> crossSection_m2;
 
+  /// Of the first nodes, those over elements that line a gap: light falls off so steeply along these that
+  /// none of it may be received as one mean. May be shorter than the tree.
+  std::vector<std::uint8_t> holdsGap;
+
   [[nodiscard]] std::size_t size() const { return centre.size(); }
   /// Nodes of the trunk: all clusters are among the first so many.
   [[nodiscard]] std::size_t trunkSize() const { return trunkSize_; }
@@ -90,6 +96,7 @@ class Hierarchy {
   [[nodiscard]] const glm::vec3& spotNormal(NodeIndex node, std::size_t spot) const {
     return isCluster(node) ? sides[spotSides[node][spot]].normal : normal(node);
   }
+  [[nodiscard]] bool isOverGap(NodeIndex node) const { return node < holdsGap.size() && holdsGap[node] != 0; }
   [[nodiscard]] ElementShape shape(NodeIndex element) const;
 
   /// Gives the leaf `parent` two children and returns the first. Their weights come with them.
@@ -120,11 +127,24 @@ class Hierarchy {
 /// Points laid evenly over a convex polygon (#≥3), seeded by an element's key.
 Spots spotsOn(std::span<const glm::vec3> polygon, std::uint64_t key);
 
-/// The two halves of an element, cut across its longer extent; their areas and weights add up to its own.
+/// How far an element reaches along its longest edge and across it, in its plane.
+struct Extents {
+  glm::vec3 along, across;  ///< unit vectors
+  glm::vec2 alongRange_m, acrossRange_m;
+
+  [[nodiscard]] float along_m() const { return alongRange_m[1] - alongRange_m[0]; }
+  [[nodiscard]] float across_m() const { return acrossRange_m[1] - acrossRange_m[0]; }
+  [[nodiscard]] float longer_m() const { return std::max(along_m(), across_m()); }
+  [[nodiscard]] float shorter_m() const { return std::min(along_m(), across_m()); }
+};
+Extents extentsOf(std::span<const glm::vec3> polygon, const glm::vec3& normal);
+
+/// The two halves of an element, one of its extents cut in two; their areas and weights add up to its own.
 struct Halves {
   ElementShape first, second;
   glm::vec4 plane;
 };
-Halves halve(const ElementShape& element, const glm::vec3& normal);
+enum class Extent : std::uint8_t { longer, shorter };
+Halves halve(const ElementShape& element, const glm::vec3& normal, Extent cut = Extent::longer);
 
 }  // namespace clerestory

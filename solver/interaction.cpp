@@ -11,6 +11,7 @@
 #include <geometry/sampling.hpp>
 #include <solver/formfactor.hpp>
 
+#include "mirrored.hpp"
 #include "weak.hpp"
 
 namespace clerestory {
@@ -20,8 +21,25 @@ constexpr float touching_m = 1e-5F;  // below this a point counts as in a plane
 // Calibrated on the furnished office (docs/validation.md): errors of surfaces against time.
 constexpr float raysInsteadOfLinks = 32.0F;  // up to so many, links are not even looked for
 constexpr float weakRaysLeast = 16.0F, weakRaysMost = 256.0F;
+constexpr std::uint32_t raysToPanes = 16;
 constexpr float darkerBySender = 0.2F;  // thresholds that a sender's own shadow may take off
 constexpr float clusterTakes = 5.0F;    // thresholds that a cluster takes as one mean
+
+/// Of each of a tree's sides the root of its exitance, in terms of what all of them emit per area; 1 at
+/// least. The exitance itself would have the panels of an office cost a quarter more than they gain.
+template <int K>
+std::vector<float> brillianceOf(const World& world, const Hierarchy& tree,
+                                std::span<const Columns<K>> exitance_lm_m2) {
+  std::vector<float> brilliance(tree.sides.size(), 1.0F);
+  float emitted_lm = 0.0F;
+  for (std::size_t i = 0; i < tree.sides.size(); ++i)
+    emitted_lm += world.layout.strength(exitance_lm_m2[i]) * tree.area_m2[tree.sides[i].root];
+  if (!(emitted_lm > 0.0F)) return brilliance;
+  const float even_lm_m2 = emitted_lm / tree.area_m2[0];
+  for (std::size_t i = 0; i < tree.sides.size(); ++i)
+    brilliance[i] = std::max(std::sqrt(world.layout.strength(exitance_lm_m2[i]) / even_lm_m2), 1.0F);
+  return brilliance;
+}
 
 }  // namespace
 
@@ -38,14 +56,19 @@ TransportSettings transportFor(double accuracy) {
 
 template <int K>
 Interactions<K>::Interactions(const World& world, const Hierarchy& tree, const Unshot<K>& unshot,
-                              const TransportSettings& settings)
+                              std::span<const Columns<K>> exitance_lm_m2, const TransportSettings& settings)
     : world_(world),
       tree_(tree),
       unshot_(unshot),
       settings_(settings),
-      totalWeight_(std::max(tree.weight[0], 1e-20F)) {
+      totalWeight_(std::max(tree.weight[0], 1e-20F)),
+      brilliance_(brillianceOf(world, tree, exitance_lm_m2)) {
   treeSideOf_.resize(2 * world_.pieces().size(), noNode);
   for (std::uint32_t i = 0; i < tree.sides.size(); ++i) treeSideOf_[tree.sides[i].side] = i;
+  seesPanes_ = std::ranges::any_of(tree.sides, [&](const TreeSide& side) {
+    const auto domain = static_cast<std::size_t>(world.building.sideDomain[side.side]);
+    return world.building.domains[domain].open && world.isMirror(side.side / 2);
+  });
 }
 
 template <int K>
@@ -120,6 +143,7 @@ Verdict Interactions<K>::judgeOnSight(const Receiver& receiver, NodeIndex sender
   if (!senderIsCluster && isBehind(receiver, tree_.centre[sender], tree_.normal(sender)))
     return Verdict::nothing;
 
+  if (receiver.node != noNode && tree_.isOverGap(receiver.node)) return Verdict::refineReceiver;
   const Sight seen = look(receiver, sender);
   if (settings_.oracle == Oracle::transportedPower) return judgePower(receiver, sender, seen);
   return receiver.isCluster() ? judgeCluster(receiver, sender, seen) : judgeElement(receiver, sender, seen);
@@ -195,6 +219,7 @@ template <int K>
 bool Interactions<K>::leavesToRays(const Receiver& receiver, std::span<const Sender> senders,
                                    WeakSenders& weak) const {
   if (!usesRays() || receiver.weight <= 0.0F) return false;
+  if (receiver.node != noNode && tree_.isOverGap(receiver.node)) return false;
   WeakSenders all = weak;
   for (const Sender sender : senders) {
     if (sender >= firstPortal || unshot_.highest[sender] <= 0.0F) continue;
@@ -206,12 +231,20 @@ bool Interactions<K>::leavesToRays(const Receiver& receiver, std::span<const Sen
 }
 
 template <int K>
-void Interactions<K>::receiveWeak(const Receiver& receiver, WeakSenders& weak, Incoming<K>& incoming,
+void Interactions<K>::receiveWeak(const Receiver& receiver, const WeakSenders& weak, Incoming<K>& incoming,
                                   Tally& tally) const {
   const auto rays =
       static_cast<std::uint32_t>(std::clamp(raysNeeded(weak.variance_lm2), weakRaysLeast, weakRaysMost));
   tally.rays += rays;
   receiveFromWeak(world_, tree_, unshot_, treeSideOf_, receiver, weak.nodes, rays, incoming);
+}
+
+template <int K>
+void Interactions<K>::receiveMirrored(const Receiver& receiver, Incoming<K>& incoming, Tally& tally) const {
+  if (!seesPanes_ || receiver.isCluster() || receiver.weight <= 0.0F || !(unshot_.highest[0] > 0.0F)) return;
+  clerestory::receiveMirrored(world_, tree_, unshot_, treeSideOf_, receiver, raysToPanes,
+                              incoming.own.irradiance_lx);
+  tally.rays += raysToPanes;
 }
 
 template <int K>

@@ -56,8 +56,9 @@ struct RayBatch {
 template <int K>
 class Interactions {
  public:
+  /// `exitance_lm_m2` (#sides of the tree): of what shines by itself.
   Interactions(const World& world, const Hierarchy& tree, const Unshot<K>& unshot,
-               const TransportSettings& settings);
+               std::span<const Columns<K>> exitance_lm_m2, const TransportSettings& settings);
 
   /// lm that one interaction may err by, or move.
   float threshold_lm = 0.0F;
@@ -92,7 +93,10 @@ class Interactions {
   [[nodiscard]] bool leavesToRays(const Receiver& receiver, std::span<const Sender> senders,
                                   WeakSenders& weak) const;
   /// Adds what the weak senders bring.
-  void receiveWeak(const Receiver& receiver, WeakSenders& weak, Incoming<K>& incoming, Tally& tally) const;
+  void receiveWeak(const Receiver& receiver, const WeakSenders& weak, Incoming<K>& incoming,
+                   Tally& tally) const;
+  /// Adds what an element outdoors sees in panes.
+  void receiveMirrored(const Receiver& receiver, Incoming<K>& incoming, Tally& tally) const;
 
  private:
   /// What the oracle sees of a sender.
@@ -111,7 +115,7 @@ class Interactions {
   [[nodiscard]] Verdict judgeCluster(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
   [[nodiscard]] Verdict judgeElement(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
   void measureNear(const Receiver& receiver, NodeIndex sender, float apart, Link& link) const;
-  [[nodiscard]] std::uint32_t raysOf(const Receiver& receiver, const Link& link) const;
+  [[nodiscard]] std::uint32_t raysOf(const Receiver& receiver, const Candidate<K>& candidate) const;
   void layRays(const Receiver& receiver, const Candidate<K>& candidate, RayBatch& batch) const;
   void weighRays(const Receiver& receiver, Candidate<K>& candidate, const RayBatch& batch, std::size_t first,
                  std::size_t last) const;
@@ -137,6 +141,8 @@ class Interactions {
   const Unshot<K>& unshot_;
   const TransportSettings& settings_;
   float totalWeight_;
+  std::vector<float> brilliance_;          // #sides of the tree, 1 or more for what shines by itself
+  bool seesPanes_ = false;                 // outdoors, where they mirror
   std::vector<std::uint32_t> treeSideOf_;  // #sides of the building; noNode: another domain's
 };
 

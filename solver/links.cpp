@@ -68,11 +68,13 @@ void Interactions<K>::measureNear(const Receiver& receiver, NodeIndex sender, fl
   link.spread = Link::packSpread(link.formFactor > 0.0F ? cornerRise * (high - low) / link.formFactor : 0.0F);
 }
 
-// By the share of the domain's light that a link could carry at most: independent of the light itself, so a
-// link computed anew is the one that was cached.
+// By the share of the domain's light that a link could carry, were all as bright as each other but for what
+// shines by itself: independent of what is unshot, so a link computed anew is the one that was cached.
 template <int K>
-std::uint32_t Interactions<K>::raysOf(const Receiver& receiver, const Link& link) const {
-  const float share = link.formFactor * receiver.weight / totalWeight_;
+std::uint32_t Interactions<K>::raysOf(const Receiver& receiver, const Candidate<K>& candidate) const {
+  const float brilliance =
+      tree_.isCluster(candidate.sender) ? 1.0F : brilliance_[tree_.treeSide[candidate.sender]];
+  const float share = brilliance * candidate.link.formFactor * receiver.weight / totalWeight_;
   if (share <= 0.0F) return 0;
   if (share < 1e-6F) return 2;
   if (share < 1e-5F) return 4;
@@ -86,7 +88,7 @@ void Interactions<K>::layRays(const Receiver& receiver, const Candidate<K>& cand
                               RayBatch& batch) const {
   const NodeIndex sender = candidate.sender;
   const bool anyCluster = receiver.isCluster() || tree_.isCluster(sender);
-  const std::uint32_t count = raysOf(receiver, candidate.link);
+  const std::uint32_t count = raysOf(receiver, candidate);
   const std::uint64_t turn = mixKeys(receiver.key, tree_.key[sender]);
   const std::uint64_t stride = 2U * (turn & 3U) + 1U;
   const std::uint64_t skip = 2U * ((turn >> 2U) & 3U) + 1U;

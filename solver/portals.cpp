@@ -17,6 +17,11 @@
 namespace clerestory {
 namespace {
 
+// Through strips between blades few rays meet the sky: their flux takes as many more as its deviation asks
+// for.
+constexpr double evenPane =
+    2.0;  // deviation of what a pane without them shows, at most, in terms of the mean
+constexpr double raysTimesMost = 16.0;
 constexpr float nearSamples = 8.0F;  // of a near element, whose points see different parts of the pane
 
 /// Whether the portal's form factor may rise steeply over an element.
@@ -108,20 +113,26 @@ std::vector<PortalSender<K>> portalsOf(const SolvedLight<K>& light, std::int32_t
     Columns<K> sum;
     Columns<K> mirrored;
     double squares = 0.0;
-    for (std::uint32_t ray = 0; ray < rays; ++ray) {
+    const auto deviationOver = [&](std::uint32_t count) {
+      const double mean = static_cast<double>(world.layout.strength(sum)) / count;
+      return mean > 0.0 ? std::sqrt(std::max(squares / count / (mean * mean) - 1.0, 0.0)) : 0.0;
+    };
+    std::uint32_t count = rays;
+    for (std::uint32_t ray = 0; ray < count; ++ray) {
       const glm::vec3 point = pointOnPolygon<glm::vec3>(sender.polygon, sequence(ray, 0), sequence(ray, 1));
       const glm::vec3 direction = cosineDirection(-sender.inward, sequence(ray, 2), sequence(ray, 3));
       const Columns<K> shown = light.throughPortal(portal, point - 1e-3F * direction, point);
       sum += shown;
       squares += std::pow(static_cast<double>(world.layout.strength(shown)), 2.0);
       if (mirrors) mirrored += mirroredSunlight(light, sender, point - 1e-3F * direction, point);
+      if (ray + 1 == rays)
+        count = rays * static_cast<std::uint32_t>(
+                           std::clamp(std::pow(deviationOver(rays) / evenPane, 2.0), 1.0, raysTimesMost));
     }
-    const float ofEach = std::numbers::pi_v<float> / static_cast<float>(rays);
+    const float ofEach = std::numbers::pi_v<float> / static_cast<float>(count);
     const Columns<K> exitance = ofEach * sum;
     sender.flux_lm = (ofEach * sender.area_m2) * (sum + mirrored);
-    const double mean = static_cast<double>(world.layout.strength(sum)) / rays;
-    if (mean > 0.0)
-      sender.deviation = static_cast<float>(std::sqrt(std::max(squares / rays / (mean * mean) - 1.0, 0.0)));
+    sender.deviation = static_cast<float>(deviationOver(count));
     sender.mirrored_lm_m2 = world.layout.strength(ofEach * mirrored);
     sender.exitance_lm_m2 = world.layout.strength(exitance);
     senders.push_back(sender);

@@ -24,8 +24,9 @@ struct PortalSender {
   float mirrored_lm_m2;  ///< mean exitance of patches of sun in the room that it mirrors; 0: of none
 };
 
-/// The portals of a domain; the flux of each by `rays` directions. `mirrorsPatches`: clear panes show their
-/// receivers the patches of sun in the room mirrored, as a part of their flux.
+/// The portals of a domain; the flux of each by `rays` directions, or more if what it shows is uneven.
+/// `mirrorsPatches`: clear panes show their receivers the patches of sun in the room mirrored, as a part of
+/// their flux.
 template <int K>
 std::vector<PortalSender<K>> portalsOf(const SolvedLight<K>& light, std::int32_t domain, std::uint32_t rays,
                                        bool mirrorsPatches);

@@ -14,6 +14,7 @@ namespace clerestory {
 template <int K>
 void SolvedLight<K>::add(std::int32_t domain, Radiosity<K> radiosity) {
   for (const TreeSide& side : radiosity.tree.sides) rootOfSide_[side.side] = side.root;
+  showsGaps_ = showsGaps_ || radiosity.tree.isOverGap(0);
   domains_[static_cast<std::size_t>(domain)] = std::move(radiosity);
 }
 

@@ -88,6 +88,9 @@ class SolvedLight {
     return entry ? &*entry : nullptr;
   }
 
+  /// Whether something outdoors that is looked at lines a gap, as blades do.
+  [[nodiscard]] bool showsGaps() const { return showsGaps_; }
+
   /// Whether the side that a ray has met belongs to a solved domain.
   [[nodiscard]] bool isSolved(const RayScene::Hit& hit) const { return rootOfSide_[hit.side()] != noNode; }
   /// Exitance of the side that a ray has met, with or without the surface's own emission; black where
@@ -147,6 +150,7 @@ class SolvedLight {
   std::vector<Columns<K>> paneFactor_;  // #pieces, of panes: tint, dirt and frames, beside the glass itself
   std::vector<Columns<K>> diffused_cd_m2_;  // #pieces, of scattering panes
   std::vector<std::optional<Radiosity<K>>> domains_;
+  bool showsGaps_ = false;
 };
 
 }  // namespace clerestory

@@ -150,7 +150,7 @@ class Reconstruction {
   /// How far the halves of an element may leave its plane: James and Stein's share of their departure.
   [[nodiscard]] float shareBeyondNoise(NodeIndex node) const {
     const NodeIndex first = tree_.firstChild[node];
-    if (noise_lm_ <= 0.0F || neighbours_.areParted(first, first + 1)) return 1.0F;
+    if (noise_lm_ <= 0.0F || tree_.isOverGap(node) || neighbours_.areParted(first, first + 1)) return 1.0F;
     float departure_lm = 0.0F;
     for (NodeIndex child = first; child < first + 2; ++child) {
       Columns<K> departure_lx =

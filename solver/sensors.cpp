@@ -241,7 +241,10 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
     value.illuminance_lx = value.direct_lx + value.reflected_lx;
     const double sampling_lx =
         2.0 * static_cast<double>(std::hypot(arriving.directDeviation_lx, arriving.reflectedDeviation_lx));
-    value.error_lx = std::hypot(sampling_lx, light.of(domain)->solverError * value.reflected_lx);
+    // What panes show of blades is as uncertain as what is reflected indoors.
+    const double solved_lx =
+        value.reflected_lx + (light.showsGaps() ? luminanceOf(layout.totalColour(arriving.direct_lx)) : 0.0);
+    value.error_lx = std::hypot(sampling_lx, light.of(domain)->solverError * solved_lx);
   });
   return values;
 }

@@ -21,7 +21,7 @@ Transport<K>::Transport(const SolvedLight<K>& light, std::int32_t domain, Radios
       tree_(radiosity.tree),
       links_(links),
       entering_(light, domain, tree_, settings_, links == Links::madeAnew),
-      interactions_(world_, tree_, unshot_, settings_) {
+      interactions_(world_, tree_, unshot_, radiosity.exitance_lm_m2, settings_) {
   interactions_.linksDark = links == Links::stored;
   received_.resize(tree_.size());
   unshot_.resize(tree_.size());
@@ -162,6 +162,8 @@ std::vector<Sender> Transport<K>::settle(const Receiver& receiver, std::vector<S
     ++work.tally.links;
     interactions_.receiveWeak(receiver, weak, incoming, work.tally);
   }
+  if (down.empty() && links_ == Links::madeAnew)
+    interactions_.receiveMirrored(receiver, incoming, work.tally);
   return down;
 }
 

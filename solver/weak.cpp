@@ -34,22 +34,32 @@ std::uint32_t firstPlace(const Hierarchy& tree, NodeIndex node) {
   return node < tree.trunkSize() ? tree.places[node][0] : tree.placeOfSide[tree.treeSide[node]];
 }
 
-/// The leaf of a side at a point if it is one of the senders or below one, else noNode. `senders` are in the
-/// order of their places.
-NodeIndex leafOfSenders(const Hierarchy& tree, std::span<const NodeIndex> senders, std::uint32_t treeSide,
+/// Senders with the places of their first sides, in the order of these: place in the upper half, node below.
+using ByPlace = std::vector<std::uint64_t>;
+
+ByPlace byPlace(const Hierarchy& tree, std::span<const NodeIndex> senders) {
+  ByPlace order;
+  order.reserve(senders.size());
+  for (const NodeIndex sender : senders)
+    order.push_back(std::uint64_t{firstPlace(tree, sender)} << 32U | sender);
+  if (!std::ranges::is_sorted(order)) std::ranges::sort(order);
+  return order;
+}
+
+/// The leaf of a side at a point if it is one of the senders or below one, else noNode.
+NodeIndex leafOfSenders(const Hierarchy& tree, const ByPlace& senders, std::uint32_t treeSide,
                         const glm::vec3& point) {
   const std::uint32_t place = tree.placeOfSide[treeSide];
-  const auto after = std::upper_bound(senders.begin(), senders.end(), place,
-                                      [&](std::uint32_t a, NodeIndex b) { return a < firstPlace(tree, b); });
+  const auto after = std::ranges::lower_bound(senders, (std::uint64_t{place} + 1U) << 32U);
   if (after == senders.begin()) return noNode;
-  const NodeIndex last = *(after - 1);
+  const auto last = static_cast<NodeIndex>(*(after - 1));
   const NodeIndex root = tree.sides[treeSide].root;
   if (last < tree.trunkSize()) return place < tree.places[last][1] ? tree.leafAt(root, point) : noNode;
   // Elements of one side: the point's way down the tree meets the sender that holds it.
-  const auto before = std::lower_bound(senders.begin(), after, place,
-                                       [&](NodeIndex a, std::uint32_t b) { return firstPlace(tree, a) < b; });
+  const std::uint64_t ofPlace = std::uint64_t{place} << 32U;
+  const auto before = std::lower_bound(senders.begin(), after, ofPlace);
   NodeIndex node = root;
-  while (std::find(before, after, node) == after) {
+  while (!std::binary_search(before, after, ofPlace | node)) {
     if (tree.isLeaf(node)) return noNode;
     node = tree.childAt(node, point);
   }
@@ -61,10 +71,8 @@ NodeIndex leafOfSenders(const Hierarchy& tree, std::span<const NodeIndex> sender
 template <int K>
 void receiveFromWeak(const World& world, const Hierarchy& tree, const Unshot<K>& unshot,
                      std::span<const std::uint32_t> treeSideOf, const Receiver& receiver,
-                     std::vector<NodeIndex>& senders, std::uint32_t rays, Incoming<K>& incoming) {
-  const auto isBefore = [&](NodeIndex a, NodeIndex b) { return firstPlace(tree, a) < firstPlace(tree, b); };
-  if (!std::is_sorted(senders.begin(), senders.end(), isBefore))
-    std::sort(senders.begin(), senders.end(), isBefore);
+                     std::span<const NodeIndex> senders, std::uint32_t rays, Incoming<K>& incoming) {
+  const ByPlace order = byPlace(tree, senders);
   const Sequence sequence(mixKeys(receiver.key, 0x3ea4));
   const bool hasChildren = receiver.node != noNode && !receiver.isCluster() && !tree.isLeaf(receiver.node);
   std::array<Received<K>, 2> sums;
@@ -81,7 +89,7 @@ void receiveFromWeak(const World& world, const Hierarchy& tree, const Unshot<K>&
     const auto hit = world.rays.nearest(from, direction, RayScene::Barrier::opaqueAndGlass);
     if (!hit || treeSideOf[hit.side()] == noNode) continue;
     const glm::vec3 to = from + hit.distance_m * direction;
-    const NodeIndex leaf = leafOfSenders(tree, senders, treeSideOf[hit.side()], to);
+    const NodeIndex leaf = leafOfSenders(tree, order, treeSideOf[hit.side()], to);
     if (leaf == noNode) continue;
     sums[child] += world.innerTransmittance(from, to) * Received<K>{unshot.radiosity_lm_m2[leaf], 1.0F};
   }
@@ -94,10 +102,10 @@ void receiveFromWeak(const World& world, const Hierarchy& tree, const Unshot<K>&
   }
 }
 
-#define CLERESTORY_INSTANTIATE(K)                                                                            \
-  template void receiveFromWeak<K>(const World&, const Hierarchy&, const Unshot<K>&,                         \
-                                   std::span<const std::uint32_t>, const Receiver&, std::vector<NodeIndex>&, \
-                                   std::uint32_t, Incoming<K>&);
+#define CLERESTORY_INSTANTIATE(K)                                                    \
+  template void receiveFromWeak<K>(const World&, const Hierarchy&, const Unshot<K>&, \
+                                   std::span<const std::uint32_t>, const Receiver&,  \
+                                   std::span<const NodeIndex>, std::uint32_t, Incoming<K>&);
 CLERESTORY_TRANSPORT_WIDTHS(CLERESTORY_INSTANTIATE)
 
 }  // namespace clerestory

@@ -9,11 +9,10 @@ namespace clerestory {
 
 /// Adds what a receiver gets from `senders`, of which none holds another, by `rays` cosine rays from points
 /// all over it: unbiased, whatever stands between and however close they are. Where it has children, each
-/// gets what came from its own points. `treeSideOf`: #sides of the building, the tree's side or noNode. Sorts
-/// the senders.
+/// gets what came from its own points. `treeSideOf`: #sides of the building, the tree's side or noNode.
 template <int K>
 void receiveFromWeak(const World& world, const Hierarchy& tree, const Unshot<K>& unshot,
                      std::span<const std::uint32_t> treeSideOf, const Receiver& receiver,
-                     std::vector<NodeIndex>& senders, std::uint32_t rays, Incoming<K>& incoming);
+                     std::span<const NodeIndex> senders, std::uint32_t rays, Incoming<K>& incoming);
 
 }  // namespace clerestory

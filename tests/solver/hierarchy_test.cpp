@@ -194,5 +194,17 @@ TEST(Hierarchy, LeafHoldsThePoint) {
   }
 }
 
+// A strip of 3 m x 6 cm is cut along its length where the shorter extent is asked for.
+TEST(Halving, CutsTheExtentThatIsAskedFor) {
+  const std::vector<glm::vec3> strip = {{0, 0, 0}, {3, 0, 0}, {3, 0.06F, 0}, {0, 0.06F, 0}};
+  const glm::vec3 normal(0, 0, 1);
+  const ElementShape whole{strip, {1.5F, 0.03F, 0}, 1.5003F, 0.18F, 1.0F, 1};
+  const auto half = [&](Extent cut) { return extentsOf(halve(whole, normal, cut).first.corners, normal); };
+  EXPECT_FLOAT_EQ(half(Extent::longer).longer_m(), 1.5F);
+  EXPECT_FLOAT_EQ(half(Extent::longer).shorter_m(), 0.06F);
+  EXPECT_FLOAT_EQ(half(Extent::shorter).longer_m(), 3.0F);
+  EXPECT_FLOAT_EQ(half(Extent::shorter).shorter_m(), 0.03F);
+}
+
 }  // namespace
 }  // namespace clerestory

@@ -70,7 +70,8 @@ struct ScreenedRoom {
   }
   /// What the link between two nodes brings, computed, and once more with its visibility from the cache.
   [[nodiscard]] std::array<Incoming<1>, 2> received(NodeIndex receiver, NodeIndex sender) const {
-    const Interactions<1> interactions(world, tree, unshot, settings);
+    const std::vector<Columns<1>> exitance(tree.sides.size());
+    const Interactions<1> interactions(world, tree, unshot, exitance, settings);
     const Receiver end = receiverOf(tree, receiver);
     Link link = interactions.measureLink(end, sender);
     std::array<Incoming<1>, 2> incoming;

@@ -180,7 +180,7 @@ inline Case lampInCluster(double reflectance) {
   }
   const std::uint32_t lamp = addLamp(drawing, 100000.0);
   addBox(drawing, {1.985, 1.985, 1.485}, {2.005, 2.005, 1.505}, lamp, addObject(drawing, "lamp"));
-  scene.study.grids = {gridOf(pointsOver({0, 0, 0}, {4, 4, 3}, 0.85, 1.0))};
+  scene.study.grids = {gridOf(pointsOver({0, 0, 0}, {4, 4, 3}, 0.85, 0.5))};
   return scene;
 }
 
