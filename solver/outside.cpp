@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint32_t looksOfPortal = 1024;
 constexpr std::uint32_t looksOfPoint = 64;
-constexpr std::uint32_t timesMost = 16;  // that many looks are taken where fewer leave sides unmet
+constexpr std::uint32_t timesMost = 16;  // that many times the looks, where fewer leave sides unmet
 constexpr double unmetShare = 0.02;      // of what is looked at, on sides that no look has met
 constexpr double elementShare = 0.002;   // of all looks, above which an element is divided
 constexpr float elementMin_m = 0.05F;

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 namespace clerestory {
 namespace {
@@ -30,16 +29,15 @@ Columns<K> evenRest(const Domain& domain, const Columns<K>& unshotPower_lm, cons
   return rest;
 }
 
-// An even rest would light a room behind a door like the one before it, and the depth of a gap like its
-// mouth. It is spread as the last step's light was: in a closed domain in such strength that all that is
-// unshot is absorbed, in an open one as a series of which each step brings the same share of the one before.
+// An even rest would light a room behind a door like the one before it. In a closed domain it is spread as
+// the last step's light was, in such strength that all that is unshot is absorbed.
 template <int K>
-void finishWithRootLink(const Domain& domain, const Columns<K>& unshotPower_lm, const Columns<K>& before_lm,
+void finishWithRootLink(const Domain& domain, const Columns<K>& unshotPower_lm,
                         const std::vector<Received<K>>& last, SolvedDomain<K>& solved) {
   const Hierarchy& tree = solved.radiosity.tree;
   const Columns<K> even = evenRest(domain, unshotPower_lm, solved);
   // What has come from outside in the only step has a pattern of its own.
-  const bool hasPattern = solved.statistics.size() > 1;
+  const bool hasPattern = !domain.open && solved.statistics.size() > 1;
   std::array<double, K> absorbed_lm{};
   for (NodeIndex node = 0; hasPattern && node < tree.size(); ++node) {
     if (!tree.isLeaf(node)) continue;
@@ -47,17 +45,12 @@ void finishWithRootLink(const Domain& domain, const Columns<K>& unshotPower_lm, 
     for (int c = 0; c < K; ++c)
       absorbed_lm[static_cast<std::size_t>(c)] += static_cast<double>(tree.area_m2[node] * absorbed[c]);
   }
-  Columns<K> ofLast;  // how often the last step's light is still to come
-  for (int c = 0; c < K; ++c) {
-    const auto whole_lm = static_cast<float>(absorbed_lm[static_cast<std::size_t>(c)]);
-    const float sinks_lm = domain.open ? before_lm[c] - unshotPower_lm[c] : whole_lm;
-    if (whole_lm > 0.0F && sinks_lm > 0.0F) ofLast[c] = unshotPower_lm[c] / sinks_lm;
-  }
   for (NodeIndex node = 0; node < tree.size(); ++node) {
     if (!tree.isLeaf(node)) continue;
     for (int c = 0; c < K; ++c) {
+      const auto whole_lm = static_cast<float>(absorbed_lm[static_cast<std::size_t>(c)]);
       solved.radiosity.irradiance_lx[node][c] +=
-          ofLast[c] > 0.0F ? ofLast[c] * last[node].irradiance_lx[c] : even[c];
+          whole_lm > 0.0F ? unshotPower_lm[c] / whole_lm * last[node].irradiance_lx[c] : even[c];
     }
   }
   Tally tally;
@@ -94,7 +87,6 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
   Columns<K> unshotPower_lm = transport.powerOf(unshot);
   const Columns<K> entering_lm = transport.enteringPower_lm();
   float before_lm = world.layout.strength(unshotPower_lm) + world.layout.strength(entering_lm);
-  Columns<K> unshotBefore_lm;
   const double first_lm = solved.firstPower_lm();
   if (!(before_lm > 0.0F)) return solved;
   transport.setFirstLight(before_lm);
@@ -123,7 +115,7 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
       solved.balance.emitted_lm -=
           static_cast<double>(tree.area_m2[node]) * luminanceOf(world.layout.totalColour(mirrored));
     }
-    unshotBefore_lm = std::exchange(unshotPower_lm, transport.powerOf(unshot));
+    unshotPower_lm = transport.powerOf(unshot);
     const float after_lm = world.layout.strength(unshotPower_lm);
     const float share = std::min(after_lm / before_lm, 1.0F);
     transport.handOverLinks(share);
@@ -138,13 +130,13 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
     const float sum_lm = world.layout.strength(transport.powerOf(sum));
     bool isLittle = after_lm <= static_cast<float>(settings.endShare) * sum_lm;
     // What is looked at outdoors may lie deep in a gap, whose light is little beside all that there is.
-    if (isOpen)
-      isLittle = isLittle && weighted(world.layout, tree, unshot) <=
-                                 settings.endShare * weighted(world.layout, tree, sum);
+    if (isOpen && isLittle)
+      isLittle =
+          weighted(world.layout, tree, unshot) <= settings.endShare * weighted(world.layout, tree, sum);
     if (isRootLinkAlone || isLittle) break;
   }
   finishWithRootLink(world.building.domains[static_cast<std::size_t>(domain)], unshotPower_lm,
-                     unshotBefore_lm, transport.received(), solved);
+                     transport.received(), solved);
   cache.replace({}, 0, 1.0F);
   solved.balance.unscaledDefect = transport.unscaledDefect();
   solved.closeBalance();
