@@ -135,20 +135,11 @@ void DirectField<K>::sample(std::vector<Part>& parts, std::span<const std::uint3
   Probes toPortals;
   Probes toEmitters;
   Probes toBrightParts;
-  const auto probesOf = [&](const Shiner& shiner) -> Probes& {
-    return shiner.portal != nullptr ? toPortals : shiner.isBrightPart ? toBrightParts : toEmitters;
-  };
-  std::size_t portalRays = 0;
-  std::size_t otherRays = 0;
-  for (std::size_t p = 0; p < parts.size(); ++p)
-    (parts[p].shiner->portal != nullptr ? portalRays : otherRays) += counts[p] - parts[p].rays;
-  toPortals.reserve(portalRays);
-  toEmitters.reserve(otherRays);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     Part& part = parts[p];
     if (counts[p] <= part.rays) continue;
     const Shiner& shiner = *part.shiner;
-    Probes& probes = probesOf(shiner);
+    Probes& probes = shiner.portal != nullptr ? toPortals : shiner.isBrightPart ? toBrightParts : toEmitters;
     const Sequence sequence(mixKeys(key, shiner.key));
     const float height_m = glm::dot(shiner.polygon[0] - point, shiner.inward);
     std::optional<SphericalPolygon> seen;

@@ -66,12 +66,6 @@ class DirectField {
     std::vector<std::size_t> part;
     std::vector<float> weight;
     std::vector<RayScene::Segment> ray;
-
-    void reserve(std::size_t count) {
-      part.reserve(count);
-      weight.reserve(count);
-      ray.reserve(count);
-    }
   };
 
   [[nodiscard]] std::vector<Part> partsOf(std::span<const float> formFactors) const;
