@@ -118,6 +118,7 @@ std::vector<DividedPolygon> divide(Soup& soup, std::vector<PlanarPolygon> polygo
 
 struct Piece {
   Loop loop;
+  glm::dvec3 normal;  ///< unit, of its polygon's plane; either sign
   std::uint32_t polygon, material, object;
   bool isDrawnForBack;
 };
@@ -130,7 +131,8 @@ std::vector<Piece> orderPieces(const Soup& soup, const NameRanks& ranks,
     const PlanarPolygon& polygon = polygons[i].polygon;
     for (Loop& loop : polygons[i].pieces) {
       startAtSmallest(soup.points, loop);
-      pieces.push_back({std::move(loop), i, polygon.material, polygon.object, !polygon.drawn.front});
+      pieces.push_back(
+          {std::move(loop), polygon.normal, i, polygon.material, polygon.object, !polygon.drawn.front});
     }
   }
   const auto cornerLess = [&](std::uint32_t a, std::uint32_t b) {
@@ -186,8 +188,10 @@ void assemble(const Scene& scene, const Soup& soup, const std::vector<Piece>& pi
     }
     const glm::dvec3 doubleArea = doubleAreaVector(out.points, loop);
     out.polygons.add(loop);
-    out.normal.push_back(glm::normalize(doubleArea) + 0.0);
-    out.area_m2.push_back(0.5 * glm::length(doubleArea));
+    // In the plane of its polygon, from which the weld may have bent it a little.
+    const double along = glm::dot(doubleArea, piece.normal);
+    out.normal.push_back(onGrid(along < 0.0 ? -piece.normal : piece.normal, normalGrid));
+    out.area_m2.push_back(0.5 * std::abs(along));
     out.polygon.push_back(
         polygonOf.try_emplace(piece.polygon, static_cast<std::uint32_t>(polygonOf.size())).first->second);
     out.surface.push_back(surfaceOf.at({piece.object, piece.material}));

@@ -379,10 +379,10 @@ std::vector<Loop> convexPieces(std::vector<glm::dvec3>& points, const PlanarPoly
   Raster raster(flat, tolerances.collinear_m);
   std::vector<Loop> result =
       raster ? rectanglePieces(points, flat, raster, frame, tolerances) : mergedTriangles(flat, tolerances);
-  if (result.empty() && glm::length(polygon.mergedAlong) > 0.0) {
+  if (result.empty() && glm::length(polygon.normal) > 0.0) {
     // A slightly warped outline may cross itself in its mean plane but not in the one it was found in.
-    const double sign = glm::dot(polygon.mergedAlong, normal) < 0.0 ? -1.0 : 1.0;
-    const PlaneFrame other(sign * polygon.mergedAlong, points[polygon.outer[0]]);
+    const double sign = glm::dot(polygon.normal, normal) < 0.0 ? -1.0 : 1.0;
+    const PlaneFrame other(sign * polygon.normal, points[polygon.outer[0]]);
     result = mergedTriangles(flatten(points, polygon, other), tolerances);
   }
   for (Loop& loop : result) dropCollinearCorners(points, tolerances.collinear_m, loop);

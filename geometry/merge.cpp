@@ -119,12 +119,23 @@ void findDrawnSides(const Soup& soup, std::span<const Face> faces, const glm::dv
   }
 }
 
+/// Unit normal of the plane of faces as they were drawn, with the canonical sign.
+glm::dvec3 meanNormal(std::span<const Face> faces) {
+  glm::dvec3 sum(0.0);
+  for (const Face& face : faces) {
+    const double sign = glm::dot(face.normal, faces[0].normal) < 0.0 ? -1.0 : 1.0;
+    sum += sign * face.area_m2 * face.normal;
+  }
+  const glm::dvec3 normal = glm::normalize(sum);
+  return normal * canonicalSign(normal);
+}
+
 /// Turns the faces of one plane, by falling area, into polygons.
 void mergeFaces(Soup& soup, const Tolerances& tolerances, std::span<const Face> faces,
                 std::vector<PlanarPolygon>& result, Findings& findings) {
   const Face& seed = faces[0];
   const std::uint32_t object = soup.object[seed.index];
-  const glm::dvec3 normal = seed.normal * canonicalSign(seed.normal);
+  const glm::dvec3 normal = meanNormal(faces);
   const PlaneFrame frame(normal, seed.middle);
   std::vector<PlanarPolygon> polygons;
   if (std::optional<Outline> outline = outlineOf(soup, tolerances, frame, faces)) {
@@ -153,7 +164,7 @@ void mergeFaces(Soup& soup, const Tolerances& tolerances, std::span<const Face> 
   for (PlanarPolygon& polygon : polygons) {
     polygon.material = soup.material[seed.index];
     polygon.object = object;
-    polygon.mergedAlong = normal;
+    polygon.normal = normal;
     result.push_back(std::move(polygon));
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Points turned one by one; a mirror image turns outlines round, so that they stay counterclockwise as seen
-// from the front. Normals follow from points on the grid, so that they have the same digits too.
+// from the front. Normals come to lie on a grid too, so that they have the same digits.
 #include "ownframe.hpp"
 
 #include <algorithm>
@@ -31,8 +31,7 @@ PlanFrame ownFrameOf(std::span<const glm::dvec3> points, const PolygonList& poly
 void turnInto(const PlanFrame& frame, const Tolerances& tolerances, Pieces& pieces) {
   turn(frame, pieces, [&](const glm::dvec3& place) { return intoFrame(frame, place); });
   for (glm::dvec3& point : pieces.points) point = onGrid(point, tolerances.grid_m);
-  for (std::size_t piece = 0; piece < pieces.size(); ++piece)
-    pieces.normal[piece] = glm::normalize(doubleAreaVector(pieces.points, pieces.polygons[piece])) + 0.0;
+  for (glm::dvec3& normal : pieces.normal) normal = onGrid(intoFrame(frame, normal), normalGrid);
 }
 
 void turnOutOf(const PlanFrame& frame, Pieces& pieces) {

@@ -15,12 +15,25 @@ Polygon polygonOf(const Pieces& pieces, std::uint32_t piece) {
   return polygon;
 }
 
-double areaOf(const Polygon& polygon) {
+namespace {
+
+/// Along the normal.
+glm::dvec3 areaVector(const Polygon& polygon) {
   glm::dvec3 sum(0.0);
   for (std::size_t i = 2; i < polygon.size(); ++i) {
     sum += glm::cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
   }
-  return 0.5 * glm::length(sum);
+  return 0.5 * sum;
+}
+
+}  // namespace
+
+double areaOf(const Polygon& polygon) {
+  return glm::length(areaVector(polygon));
+}
+
+double areaAlong(const glm::dvec3& normal, const Polygon& polygon) {
+  return std::abs(glm::dot(areaVector(polygon), normal));
 }
 
 Parts partAt(const Polygon& polygon, const glm::dvec3& onPlane, const glm::dvec3& normal) {
@@ -79,7 +92,7 @@ std::vector<std::uint32_t> divide(
           result.points.push_back(point);
         }
       }
-      keep(corners, areaOf(part));
+      keep(corners, areaAlong(pieces.normal[piece], part));
     }
   }
   pieces = std::move(result);

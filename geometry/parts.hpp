@@ -19,6 +19,9 @@ Polygon polygonOf(const Pieces& pieces, std::uint32_t piece);
 
 double areaOf(const Polygon& polygon);
 
+/// As seen along a unit normal.
+double areaAlong(const glm::dvec3& normal, const Polygon& polygon);
+
 /// A convex polygon parted by a plane; `cut` holds the two points where its outline meets it.
 struct Parts {
   Polygon front, back, cut;

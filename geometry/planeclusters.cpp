@@ -21,7 +21,14 @@ struct Cluster {
 Face describe(const Soup& soup, std::uint32_t index) {
   const auto corners = soup.faces[index];
   const glm::dvec3 vector = doubleAreaVector(soup.points, corners);
-  Face face{index, glm::normalize(vector), glm::dvec3(0.0), 0.5 * glm::length(vector), 0.0};
+  const glm::dvec3 bentNormal = glm::normalize(vector);
+  const bool isBent = glm::length(soup.bentFrom[index]) > 0.0;
+  Face face{index,
+            isBent ? soup.bentFrom[index] : bentNormal,
+            bentNormal,
+            glm::dvec3(0.0),
+            0.5 * glm::length(vector),
+            0.0};
   double longest_m = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     face.middle += soup.points[corners[i]] / static_cast<double>(corners.size());
@@ -63,17 +70,24 @@ class PlaneClusters {
     return cluster;
   }
 
+  [[nodiscard]] bool isBent(const Face& face) const { return glm::length(soup_.bentFrom[face.index]) > 0.0; }
+
   [[nodiscard]] bool fits(const Face& face, const Face& seed) const {
-    // Thin faces have uncertain normals; faces that the weld has bent are taken for the planes they were.
+    const auto sineBetween = [](const glm::dvec3& a, const glm::dvec3& b) {
+      return glm::length(glm::cross(a, b));
+    };
+    // Thin faces have uncertain normals.
     const double thickness_m = std::max(face.thickness_m, 1e-9);
-    double angle_rad = std::min(0.5, tolerances_.coplanarAngle_rad + 4.0 * tolerances_.drawn_m / thickness_m);
-    double height_m = tolerances_.coplanar_m;
-    if (soup_.displaced[face.index] || soup_.displaced[seed.index]) {
-      angle_rad = std::max(angle_rad,
-                           std::min(tolerances_.displacedAngle_rad, 4.0 * tolerances_.weld_m / thickness_m));
-      height_m = 2.0 * tolerances_.weld_m;
-    }
-    if (glm::length(glm::cross(face.normal, seed.normal)) > angle_rad) return false;
+    const double angle_rad =
+        std::min(0.5, tolerances_.coplanarAngle_rad + 4.0 * tolerances_.drawn_m / thickness_m);
+    const bool areBent = isBent(face) || isBent(seed);
+    // Faces that the weld has bent are taken for the planes they were, and for those it may have made one.
+    const double bentAngle_rad =
+        std::min(tolerances_.displacedAngle_rad, 4.0 * tolerances_.weld_m / thickness_m);
+    if (sineBetween(face.normal, seed.normal) > angle_rad &&
+        !(areBent && sineBetween(face.bentNormal, seed.bentNormal) <= bentAngle_rad))
+      return false;
+    const double height_m = areBent ? 2.0 * tolerances_.weld_m : tolerances_.coplanar_m;
     return std::ranges::all_of(soup_.faces[face.index], [&](std::uint32_t corner) {
       return std::abs(glm::dot(soup_.points[corner] - seed.middle, seed.normal)) <= height_m;
     });

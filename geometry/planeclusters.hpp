@@ -9,7 +9,8 @@ namespace clerestory {
 /// A face of the soup and its measures.
 struct Face {
   std::uint32_t index;
-  glm::dvec3 normal;  ///< unit, drawn
+  glm::dvec3 normal;      ///< unit, of the face as it was drawn
+  glm::dvec3 bentNormal;  ///< unit, after the weld; `normal` where that moved no corner
   glm::dvec3 middle;
   double area_m2;
   double thickness_m;

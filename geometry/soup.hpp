@@ -47,7 +47,9 @@ struct Soup {
   std::vector<std::uint32_t> material;  ///< #faces
   std::vector<std::uint32_t> object;    ///< #faces
   std::vector<DrawnSides> drawn;        ///< #faces
-  std::vector<bool> displaced;  ///< #faces: the weld has moved a corner, so the face may be warped a little
+  /// #faces: the unit normal before the weld moved a corner, which may have warped the face a little; zero
+  /// where it moved none.
+  std::vector<glm::dvec3> bentFrom;
 };
 
 /// A maximal planar region: an outer ring, counterclockwise about its normal, and holes, clockwise.
@@ -56,8 +58,8 @@ struct PlanarPolygon {
   std::vector<Loop> holes{};
   std::uint32_t material = 0;
   std::uint32_t object = 0;
-  DrawnSides drawn{};           ///< both where as much of it is drawn for one as for the other
-  glm::dvec3 mergedAlong{0.0};  ///< unit normal of the plane in which the outline was found; either sign
+  DrawnSides drawn{};      ///< both where as much of it is drawn for one as for the other
+  glm::dvec3 normal{0.0};  ///< unit, of the plane in which the outline was found; either sign
 };
 
 /// Places of materials and objects in the order of their names, which a file's order does not change.
@@ -80,6 +82,9 @@ inline glm::dvec3 onGrid(const glm::dvec3& point, double grid_m) {
   const double perMetre = glm::round(1.0 / grid_m);
   return glm::floor(point * perMetre + half) / perMetre + 0.0;  // + 0.0 turns -0 into 0
 }
+
+/// Components of unit normals lie on multiples of it, so that turning a model changes none of their digits.
+constexpr double normalGrid = 1e-9;
 
 /// Twice the area of a loop along its normal (Newell).
 inline glm::dvec3 doubleAreaVector(std::span<const glm::dvec3> points, std::span<const std::uint32_t> loop) {

@@ -89,14 +89,14 @@ void filterFaces(Soup& soup, Keep keep) {
     soup.material[kept] = soup.material[face];
     soup.object[kept] = soup.object[face];
     soup.drawn[kept] = soup.drawn[face];
-    soup.displaced[kept] = soup.displaced[face];
+    soup.bentFrom[kept] = soup.bentFrom[face];
     ++kept;
   }
   soup.faces = std::move(faces);
   soup.material.resize(kept);
   soup.object.resize(kept);
   soup.drawn.resize(kept);
-  soup.displaced.resize(kept);
+  soup.bentFrom.resize(kept);
 }
 
 /// Drops corners that repeat the one before, and spikes that go out and back on one edge.
@@ -293,11 +293,13 @@ Soup weld(const Soup& soup, const Tolerances& tolerances, CleanupCounts& counts)
   counts.pointsWelded += used - result.points.size();
   result.faces = soup.faces;
   result.drawn = soup.drawn;
-  result.displaced.resize(soup.faces.size());
+  result.bentFrom.resize(soup.faces.size(), glm::dvec3(0.0));
   for (std::size_t face = 0; face < soup.faces.size(); ++face) {
-    result.displaced[face] = std::ranges::any_of(soup.faces[face], [&](std::uint32_t corner) {
+    const bool isDisplaced = std::ranges::any_of(soup.faces[face], [&](std::uint32_t corner) {
       return glm::length(result.points[renumbered[corner]] - onTheGrid[corner]) > tolerances.collinear_m;
     });
+    const glm::dvec3 vector = doubleAreaVector(onTheGrid, soup.faces[face]);
+    if (isDisplaced && glm::length(vector) > 0.0) result.bentFrom[face] = glm::normalize(vector);
   }
   for (std::uint32_t& corner : result.faces.corners) corner = renumbered[corner];
   result.material = soup.material;
@@ -334,10 +336,10 @@ void sortFaces(Soup& soup, const NameRanks& ranks) {
     const auto q = soup.faces[b];
     if (!std::ranges::equal(p, q)) return std::ranges::lexicographical_compare(p, q);
     const auto ranksOfFace = [&](std::uint32_t face) {
-      return std::tuple(ranks.material[soup.material[face]], ranks.object[soup.object[face]],
-                        bool{soup.displaced[face]});
+      return std::tuple(ranks.material[soup.material[face]], ranks.object[soup.object[face]]);
     };
-    return ranksOfFace(a) < ranksOfFace(b);
+    if (ranksOfFace(a) != ranksOfFace(b)) return ranksOfFace(a) < ranksOfFace(b);
+    return lexicographicallyLess(soup.bentFrom[a], soup.bentFrom[b]);
   });
   Soup sorted{std::move(soup.points), {}, {}, {}, {}, {}};
   for (const std::uint32_t face : order) {
@@ -345,7 +347,7 @@ void sortFaces(Soup& soup, const NameRanks& ranks) {
     sorted.material.push_back(soup.material[face]);
     sorted.object.push_back(soup.object[face]);
     sorted.drawn.push_back(soup.drawn[face]);
-    sorted.displaced.push_back(soup.displaced[face]);
+    sorted.bentFrom.push_back(soup.bentFrom[face]);
   }
   soup = std::move(sorted);
 }
@@ -405,19 +407,19 @@ void dropDuplicateFaces(Soup& soup, std::span<const Material> materials, const N
 void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& counts, Findings& findings) {
   Soup result;
   double worst_m = 0.0;
-  const auto add = [&](std::span<const std::uint32_t> corners, std::size_t face) {
+  const auto add = [&](std::span<const std::uint32_t> corners, std::size_t face, const glm::dvec3& bentFrom) {
     result.faces.add(corners);
     result.material.push_back(soup.material[face]);
     result.object.push_back(soup.object[face]);
     result.drawn.push_back(soup.drawn[face]);
-    result.displaced.push_back(soup.displaced[face]);
+    result.bentFrom.push_back(bentFrom);
   };
   for (std::size_t face = 0; face < soup.faces.size(); ++face) {
     const Loop loop(soup.faces[face].begin(), soup.faces[face].end());
     const glm::dvec3 normal = glm::normalize(doubleAreaVector(soup.points, loop));
     const double warp = loop.size() > 3 ? warp_m(soup.points, loop, normal) : 0.0;
     if (warp <= tolerances.planar_m) {
-      add(loop, face);
+      add(loop, face, soup.bentFrom[face]);
       continue;
     }
     findings.note("G203", soup.points, loop, soup.object[face], warp);
@@ -425,15 +427,17 @@ void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& c
     for (const auto& triangle : trianglesOf(soup.points, loop, normal)) {
       Loop corners(triangle.begin(), triangle.end());
       startAtSmallest(soup.points, corners);
-      if (glm::length(doubleAreaVector(soup.points, corners)) < 2.0 * tolerances.degenerateArea_m2) continue;
-      add(corners, face);
+      const glm::dvec3 vector = doubleAreaVector(soup.points, corners);
+      if (glm::length(vector) < 2.0 * tolerances.degenerateArea_m2) continue;
+      const bool isBent = glm::length(soup.bentFrom[face]) > 0.0;
+      add(corners, face, isBent ? glm::normalize(vector) : glm::dvec3(0.0));
     }
   }
   soup.faces = std::move(result.faces);
   soup.material = std::move(result.material);
   soup.object = std::move(result.object);
   soup.drawn = std::move(result.drawn);
-  soup.displaced = std::move(result.displaced);
+  soup.bentFrom = std::move(result.bentFrom);
   counts.nonPlanarFaces += findings.count("G203");
   const auto worst_mm = static_cast<long>(std::lround(worst_m * 1e3));
   findings.tell("G203", "non-planar faces were split into triangles; the worst leaves its plane by " +

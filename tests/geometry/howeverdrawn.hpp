@@ -47,7 +47,7 @@ inline void expectSameHoweverDrawn(const std::filesystem::path& file, bool keeps
       {"in inches", inUnit(file, scene.axes, "in")},
       {"reversed", reversed(scene)},
       {"shuffled", shuffled(scene, 3)},
-      {"divided", divided(scene)}};
+      {"divided in six", divided(scene, 3, 2)}};
   for (const auto& [how, other] : others) {
     SCOPED_TRACE(how);
     expectSame(other, expected);

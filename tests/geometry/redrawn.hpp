@@ -72,9 +72,9 @@ Scene withFaces(const Scene& scene, const Divide& divide) {
   return result;
 }
 
-/// Rectangles come in two, across the middles of two sides: each with points of its own.
-inline Scene divided(const Scene& scene) {
-  return withFaces(scene, [](Scene& result, std::span<const std::uint32_t> c, const auto& add) {
+/// Rectangles come in `columns` x `rows`, each with points of its own.
+inline Scene divided(const Scene& scene, int columns, int rows) {
+  return withFaces(scene, [&](Scene& result, std::span<const std::uint32_t> c, const auto& add) {
     const auto at = [&](std::size_t i) { return result.points[c[i]]; };
     const bool isRectangle =
         c.size() == 4 && glm::length(at(0) - at(1) + at(2) - at(3)) < 1e-9 * glm::length(at(2) - at(0));
@@ -82,13 +82,24 @@ inline Scene divided(const Scene& scene) {
       add({c.begin(), c.end()});
       return;
     }
-    const auto middle = static_cast<std::uint32_t>(result.points.size());
-    const glm::dvec3 first = 0.5 * (at(0) + at(1));
-    const glm::dvec3 second = 0.5 * (at(2) + at(3));
-    result.points.push_back(first);
-    result.points.push_back(second);
-    add({c[0], middle, middle + 1, c[3]});
-    add({middle, c[1], c[2], middle + 1});
+    const glm::dvec3 origin = at(0);
+    const glm::dvec3 u = (at(1) - origin) / static_cast<double>(columns);
+    const glm::dvec3 v = (at(3) - origin) / static_cast<double>(rows);
+    const std::array<std::uint32_t, 4> corner{c[0], c[1], c[2], c[3]};
+    const auto first = static_cast<std::uint32_t>(result.points.size());
+    const auto point = [&](int i, int j) {
+      if ((i == 0 || i == columns) && (j == 0 || j == rows))
+        return corner[j == 0 ? (i == 0 ? 0 : 1) : (i == 0 ? 3 : 2)];
+      return first + static_cast<std::uint32_t>(j * (columns + 1) + i);
+    };
+    for (int j = 0; j <= rows; ++j) {
+      for (int i = 0; i <= columns; ++i)
+        result.points.push_back(origin + static_cast<double>(i) * u + static_cast<double>(j) * v);
+    }
+    for (int j = 0; j < rows; ++j) {
+      for (int i = 0; i < columns; ++i)
+        add({point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)});
+    }
   });
 }
 
