@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -15,11 +16,9 @@
 namespace clerestory {
 namespace {
 
-constexpr float clearance_m = 0.05F;     // free height over a point that may join airs
-constexpr float bundle_m = 0.03F;        // half the width of the narrowest opening
-constexpr double airMin_m2 = 0.5;        // surface of the smallest air that is one by itself
-constexpr double worthCutting_m2 = 3.0;  // surface of an air for which a side is cut at its border
-constexpr std::uint32_t raysOfPoint = 6;
+constexpr float buried_m = 1e-5F;          // height that a place's own side is told from others from
+constexpr float bundle_m = 0.03F;          // half the width of the narrowest opening
+constexpr double worthCutting_m2 = 3.0;    // surface of an air for which a side is cut at its border
 constexpr std::uint32_t pointsOfSide = 3;  // at least; one where a side is smaller than an opening
 constexpr double pointsOfModel = 4000.0;   // further ones, shared out by area
 constexpr std::size_t pointsOfSideMax = 256;
@@ -74,7 +73,7 @@ std::uint32_t AirSurvey::airOf(std::uint32_t side) const {
 bool AirSurvey::isInTwoAirs(std::uint32_t side) const {
   std::uint32_t first = nowhere;
   for (std::uint32_t place = firstPlace_[side]; place < firstPlace_[side + 1]; ++place) {
-    if (!places_[place].isFree || airArea_m2_[parent_[place]] < worthCutting_m2) continue;
+    if (!places_[place].isFree() || airArea_m2_[parent_[place]] < worthCutting_m2) continue;
     if (first != nowhere && first != parent_[place]) return true;
     first = parent_[place];
   }
@@ -93,8 +92,10 @@ std::uint32_t AirSurvey::closerAirOf(std::uint32_t side, std::uint32_t own,
   bool agree = isLit;
   for (std::uint32_t i = 0; i < rays; ++i) {
     if (votes.isDecided(rays - i) || (agree && i == agreeingRays)) break;
-    const glm::vec3 start =
-        pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1)) + rayOffset_m * normal;
+    const glm::vec3 point = pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1));
+    // What is seen from within a gap without a mouth is seen through a crack.
+    if (isShut_[side] && freeHeight_m(side, point, normal) < clearance_m) continue;
+    const glm::vec3 start = point + rayOffset_m * normal;
     const std::uint32_t other = look(start, cosineDirection(normal, sequence(i, 2), sequence(i, 3))).place;
     const std::uint32_t met = other == nowhere ? nowhere : air_[other];
     if (met != nowhere && lit[met]) votes.add(met);
@@ -124,6 +125,8 @@ AirSurvey::AirSurvey(const CleanModel& model, const RayScene& rays, const AirSur
   joinAcrossAir();
   measureAirs();
   follow();
+  openThinAir();
+  closeThinAir(model.materials);
 }
 
 bool AirSurvey::isInDoubt(std::uint32_t side, std::uint32_t own) const {
@@ -224,24 +227,41 @@ void AirSurvey::placeOver(std::uint32_t side) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const glm::vec3 point =
         count == 1 ? middleOf(polygon) : pointOnPolygon<glm::vec3>(polygon, sequence(i, 0), sequence(i, 1));
-    const glm::vec3 start = point + rayOffset_m * normal;
     const std::uint32_t place = firstPlace_[side] + i;
-    places_[place] = {start, normal, side, place, isOpen(start, point + clearance_m * normal)};
+    places_[place] = {point + rayOffset_m * normal, normal, side, place, freeHeight_m(side, point, normal)};
   }
+}
+
+// Near the edge of a wedge the other wall is nearer than the points from which rays start. Farther out than
+// coordinates have digits for, rays start no lower than those.
+float AirSurvey::freeHeight_m(std::uint32_t side, const glm::vec3& point, const glm::vec3& normal) const {
+  const float reach_m = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
+  float from_m =
+      std::min(std::max(buried_m, 16.0F * std::numeric_limits<float>::epsilon() * reach_m), rayOffset_m);
+  const auto meet = [&] {
+    return rays_.nearest(point + from_m * normal, normal, RayScene::Barrier::opaqueAndGlass,
+                         clearance_m - from_m);
+  };
+  auto hit = meet();
+  if (hit && hit.piece == side / 2 && from_m < rayOffset_m) {  // itself, by rounding
+    from_m = rayOffset_m;
+    hit = meet();
+  }
+  return hit ? from_m + hit.distance_m : clearance_m;
 }
 
 glm::vec3 AirSurvey::hover(std::uint32_t place) const {
   return places_[place].point + 0.9F * clearance_m * places_[place].normal;
 }
 
-bool AirSurvey::isOpenWide(const glm::vec3& from, const glm::vec3& to) const {
+bool AirSurvey::isOpenWide(const glm::vec3& from, const glm::vec3& to, float half_m) const {
   if (!isOpen(from, to)) return false;
   const glm::vec3 way = to - from;
   if (glm::length(way) < 1e-6F) return true;
   glm::vec3 u;
   glm::vec3 v;
   tangentFrame(glm::normalize(way), u, v);
-  for (const glm::vec3& aside : {bundle_m * u, -bundle_m * u, bundle_m * v, -bundle_m * v}) {
+  for (const glm::vec3& aside : {half_m * u, -half_m * u, half_m * v, -half_m * v}) {
     if (!isOpen(from, from + aside) || !isOpen(from + aside, to + aside)) return false;
   }
   return true;
@@ -251,8 +271,8 @@ void AirSurvey::joinAlongSides() {
   forEachIndex(firstPlace_.size() - 1, sidesOfTask, [&](std::size_t side) {
     for (std::uint32_t a = firstPlace_[side]; a < firstPlace_[side + 1]; ++a) {
       for (std::uint32_t b = firstPlace_[side]; b < a; ++b) {
-        if (!places_[a].isFree || !places_[b].isFree || root(a) == root(b)) continue;
-        if (isOpenWide(hover(a), hover(b))) join(a, b);
+        if (!places_[a].isFree() || !places_[b].isFree() || root(a) == root(b)) continue;
+        if (isOpenWide(hover(a), hover(b), bundle_m)) join(a, b);
       }
     }
   });
@@ -306,7 +326,8 @@ void AirSurvey::lookAround(const AirSurvey* earlier, const SameSides* same) {
         const std::uint32_t former = earlier->firstPlace_[same->before[side]] + place - firstPlace_[side];
         met = seenAgain(*earlier, *same, earlier->met_[std::size_t{former} * raysOfPoint + ray]);
       }
-      if (met.place == nowhere) met = look(places_[place].point, directionOf(place, ray));
+      if (met.place == nowhere && !places_[place].isBuried())
+        met = look(places_[place].point, directionOf(place, ray));
     }
   });
 }
@@ -324,12 +345,13 @@ AirSurvey::Meeting AirSurvey::seenAgain(const AirSurvey& earlier, const SameSide
 bool AirSurvey::bundlePasses(std::uint32_t place, std::uint32_t ray) const {
   const Meeting& met = met_[std::size_t{place} * raysOfPoint + ray];
   const glm::vec3 direction = directionOf(place, ray);
-  if (met.place == outside_) return isOpenWide(hover(place), hover(place) + 1e4F * direction);
+  if (met.place == outside_) return isOpenWide(hover(place), hover(place) + 1e4F * direction, bundle_m);
   const Place& other = places_[met.place];
-  if (!other.isFree) return false;
+  if (!other.isFree()) return false;
   const glm::vec3 point = places_[place].point + met.distance_m * direction + rayOffset_m * other.normal;
   const glm::vec3 above = point + 0.9F * clearance_m * other.normal;
-  return isOpen(point, above) && isOpenWide(above, hover(met.place)) && isOpenWide(hover(place), above);
+  return isOpen(point, above) && isOpenWide(above, hover(met.place), bundle_m) &&
+         isOpenWide(hover(place), above, bundle_m);
 }
 
 void AirSurvey::joinAcrossAir() {
@@ -341,7 +363,7 @@ void AirSurvey::joinAcrossAir() {
     std::fill(passing.begin(), passing.end(), none);
     forEachIndex((places_.size() + every - 1) / every, sidesOfTask, [&](std::size_t index) {
       const auto place = static_cast<std::uint32_t>(index * every);
-      if (!places_[place].isFree) return;
+      if (!places_[place].isFree()) return;
       while (tried[place] < raysOfPoint && passing[place] == none) {
         const std::uint8_t ray = tried[place]++;
         const std::uint32_t other = met_[std::size_t{place} * raysOfPoint + ray].place;
@@ -354,7 +376,7 @@ void AirSurvey::joinAcrossAir() {
     }
   }
   for (std::uint32_t place = 0; place < places_.size(); ++place) {
-    for (std::uint32_t ray = tried[place]; places_[place].isFree && ray < raysOfPoint; ++ray) {
+    for (std::uint32_t ray = tried[place]; places_[place].isFree() && ray < raysOfPoint; ++ray) {
       const std::uint32_t other = met_[std::size_t{place} * raysOfPoint + ray].place;
       if (other != nowhere && root(place) != root(other) && bundlePasses(place, ray)) join(place, other);
     }
@@ -367,7 +389,7 @@ void AirSurvey::measureAirs() {
   for (std::uint32_t side = 0; side + 1 < firstPlace_.size(); ++side) {
     const double share_m2 = pieces_.area_m2[side / 2] / (firstPlace_[side + 1] - firstPlace_[side]);
     for (std::uint32_t place = firstPlace_[side]; place < firstPlace_[side + 1]; ++place) {
-      if (places_[place].isFree) airArea_m2_[parent_[place]] += share_m2;
+      if (places_[place].isFree()) airArea_m2_[parent_[place]] += share_m2;
     }
   }
 }
@@ -376,7 +398,7 @@ void AirSurvey::follow() {
   air_.assign(places_.size() + 1, nowhere);
   air_[outside_] = outside_;
   for (std::uint32_t place = 0; place < places_.size(); ++place) {
-    if (!places_[place].isFree) continue;
+    if (!places_[place].isFree()) continue;
     const std::uint32_t air = parent_[place];
     if (air == outside_ || airArea_m2_[air] >= airMin_m2) air_[place] = air;
   }

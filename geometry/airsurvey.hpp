@@ -65,7 +65,12 @@ class AirSurvey {
     glm::vec3 point, normal;
     std::uint32_t side;
     std::uint32_t key;  ///< of its rays' directions
-    bool isFree;        ///< has clearance; others only follow
+    float free_m;       ///< height over the side, up to the clearance
+
+    /// Has clearance; others only follow.
+    [[nodiscard]] bool isFree() const { return free_m >= clearance_m; }
+    /// Another surface lies between the side and the point, so that it sees another air than the side's.
+    [[nodiscard]] bool isBuried() const { return free_m < rayOffset_m; }
   };
 
   /// What a ray of a place met.
@@ -101,6 +106,8 @@ class AirSurvey {
   [[nodiscard]] std::uint32_t countPlaces(std::uint32_t side, double total_m2) const;
   void placeAll(const AirSurvey* earlier, const SameSides* same);
   void placeOver(std::uint32_t side);
+  /// Free height over a point of a side, up to the clearance.
+  [[nodiscard]] float freeHeight_m(std::uint32_t side, const glm::vec3& point, const glm::vec3& normal) const;
 
   [[nodiscard]] std::span<const Place> placesOf(std::uint32_t side) const {
     return std::span(places_).subspan(firstPlace_[side], firstPlace_[side + 1] - firstPlace_[side]);
@@ -109,8 +116,8 @@ class AirSurvey {
   /// Where a free place's bundles start.
   [[nodiscard]] glm::vec3 hover(std::uint32_t place) const;
 
-  /// Whether a bundle of rays as wide as an opening passes between two points in the air.
-  [[nodiscard]] bool isOpenWide(const glm::vec3& from, const glm::vec3& to) const;
+  /// Whether a bundle of rays, `half_m` to each side, passes between two points in the air.
+  [[nodiscard]] bool isOpenWide(const glm::vec3& from, const glm::vec3& to, float half_m) const;
 
   /// Comes before all other joins: a side's places have roots among themselves.
   void joinAlongSides();
@@ -144,6 +151,23 @@ class AirSurvey {
   /// known.
   void follow();
 
+  /// Whether a place, or the outside, knows its air by itself.
+  [[nodiscard]] bool isSure(std::uint32_t place) const {
+    return air_[place] != nowhere && air_[place] == parent_[place];
+  }
+  /// Whether a place's rays met one that is sure.
+  [[nodiscard]] bool seesFreeAir(std::uint32_t place) const;
+  /// The air that a gap before a side opens to; nowhere if no mouth as high as the gap is found.
+  [[nodiscard]] std::uint32_t airAtMouth(std::uint32_t side) const;
+  /// Gives sides that lie in gaps, and of whose places few see out, the air at the gap's mouth, if any.
+  void openThinAir();
+  /// Makes an air of places that know none, see each other, and have something among them that shines: no
+  /// wall's cavity does.
+  void closeThinAir(std::span<const Material> materials);
+
+  static constexpr float clearance_m = 0.05F;  ///< free height over a place that may join airs
+  static constexpr double airMin_m2 = 0.5;     ///< surface of the smallest air that is one by itself
+  static constexpr std::uint32_t raysOfPoint = 6;
   static constexpr std::size_t sidesOfTask = 64;  ///< or places
   const Pieces& pieces_;
   const RayScene& rays_;
@@ -154,6 +178,7 @@ class AirSurvey {
   std::vector<std::uint32_t> parent_;             // union-find over places and the outside; in the end roots
   std::vector<std::uint32_t> air_;                // #places + 1: nowhere where it is not known
   std::vector<double> airArea_m2_;                // by root
+  std::vector<bool> isShut_;                      // #sides: in a gap without a mouth
   std::uint32_t outside_ = 0;
 };
 

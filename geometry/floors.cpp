@@ -344,7 +344,7 @@ void addFaces(const Building& building, const RayScene& rays, const RoomAir& air
               FloorLooks& looks, Level& level) {
   constexpr double allShare = 0.67;        // things on a floor hide the air from some looks
   constexpr double sharedLeast_m2 = 0.05;  // a smaller face is of one region, or of none
-  constexpr double slitLeast_m2 = 1e-4;    // a smaller sliver is left out: rounding says what is seen from it
+  constexpr double slitLeast_m2 = 2.5e-4;  // a smaller sliver is left out: rounding says what is seen from it
   constexpr double sliverShare = 0.95;     // a joint reaches under walls, a sheet's edge stands in a room
   const Storey& storey = air.storeys[s];
   level.faces.resize(at(storey.parted.count));

@@ -59,17 +59,18 @@ inline Case litRoom(double reflectance, double exitance_lm_m2 = 1000.0) {
   return room;
 }
 
-/// Two plates of 1 x 1 m, `gap_m` apart, in the middle of a room; all shines alike.
-inline Case plates(double gap_m, double reflectance) {
+/// Two square plates, `gap_m` apart, in the middle of a room; all shines alike.
+inline Case plates(double gap_m, double reflectance, double side_m = 1.0) {
   Case scene;
-  addBox(scene.drawing, {0, 0, 0}, {3, 3, 3});
+  const double end = 1.0 + side_m;
+  addBox(scene.drawing, {0, 0, 0}, {end + 1.0, end + 1.0, 3});
   const std::uint32_t lower = addObject(scene.drawing, "lower");
   const std::uint32_t upper = addObject(scene.drawing, "upper");
-  addBox(scene.drawing, {1, 1, 1}, {2, 2, 1.2}, plaster, lower);
-  addBox(scene.drawing, {1, 1, 1.2 + gap_m}, {2, 2, 1.4 + gap_m}, plaster, upper);
+  addBox(scene.drawing, {1, 1, 1}, {end, end, 1.2}, plaster, lower);
+  addBox(scene.drawing, {1, 1, 1.2 + gap_m}, {end, end, 1.4 + gap_m}, plaster, upper);
   makeFurnace(scene, reflectance);
   look(scene, {sensor({0.5, 0.5, 1.2}), sensor({0.9, 1.5, 1.2}, {1, 0, 0}), sensor({1.5, 1.5, 1.5 + gap_m}),
-               sensor({1.5, 1.5, 0.9}, {0, 0, -1}), sensor({2.4, 2.4, 0.5}, {-1, -1, 1})});
+               sensor({1.5, 1.5, 0.9}, {0, 0, -1}), sensor({end + 0.4, end + 0.4, 0.5}, {-1, -1, 1})});
   return scene;
 }
 

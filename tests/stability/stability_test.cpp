@@ -130,7 +130,11 @@ TEST(Stability, Reflectance999) {
 }
 
 TEST(Stability, Plates1Millimetre) {
-  expectEven(solvedAtThree(plates(1e-3, 0.8)), 5.0);
+  expectFurnace(solvedAtThree(plates(1e-3, 0.8)), 0.8);
+}
+// So much wider than the gap is high that hardly a ray from between them finds its way out.
+TEST(Stability, WidePlates1Millimetre) {
+  expectFurnace(solvedAtThree(plates(1e-3, 0.8, 8.0)), 0.8);
 }
 TEST(Stability, PlatesTenthOfAMillimetre) {
   expectFurnace(solvedAtThree(plates(1e-4, 0.8)), 0.8);
@@ -139,6 +143,12 @@ TEST(Stability, PlatesThatTouch) {
   expectFurnace(solvedAtThree(plates(0.0, 0.8)), 0.8);
 }
 
+TEST(Stability, WallsAt1Degree) {
+  expectFurnace(solvedAtThree(wedge(1.0, 0.8)), 0.8);
+}
+TEST(Stability, WallsAt179Degrees) {
+  expectFurnace(solvedAtThree(wedge(179.0, 0.8)), 0.8);
+}
 TEST(Stability, WallsAt30Degrees) {
   expectFurnace(solvedAtThree(wedge(30.0, 0.8)), 0.8);
 }
