@@ -288,8 +288,7 @@ NodeIndex Hierarchy::leafAt(NodeIndex node, const glm::vec3& point) const {
 }
 
 std::size_t Hierarchy::bytes() const {
-  return size() * (sizeof(glm::vec3) + 3 * sizeof(float) + 2 * sizeof(NodeIndex) + sizeof(std::uint64_t) +
-                   2 * sizeof(std::uint32_t) + sizeof(glm::vec4) + sizeof(Spots)) +
+  return size() * bytesOfNode +
          trunkSize_ * (sizeof(spotSides[0]) + sizeof(crossSection_m2[0]) + sizeof(places[0])) +
          placeOfSide.size() * sizeof(placeOfSide[0]) + corners.size() * sizeof(glm::vec3);
 }

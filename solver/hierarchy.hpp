@@ -115,6 +115,10 @@ class Hierarchy {
   /// The leaf of a side's tree that holds a point of the side.
   [[nodiscard]] NodeIndex leafAt(NodeIndex sideRoot, const glm::vec3& point) const;
 
+  /// Bytes that any node takes beside its corners.
+  static constexpr std::size_t bytesOfNode = sizeof(glm::vec3) + 3 * sizeof(float) + 2 * sizeof(NodeIndex) +
+                                             sizeof(std::uint64_t) + 2 * sizeof(std::uint32_t) +
+                                             sizeof(glm::vec4) + sizeof(Spots);
   /// Bytes that nodes take, without the values that run over them.
   [[nodiscard]] std::size_t bytes() const;
 

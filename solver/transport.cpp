@@ -10,6 +10,19 @@
 #include <geometry/parallel.hpp>
 
 namespace clerestory {
+namespace {
+
+/// Of a node: what it sends and has received here, the sum and what is unshot where the steps are driven.
+template <int K>
+constexpr std::size_t valueBytesOfNode = 3 * sizeof(Columns<K>) + 3 * sizeof(float) + sizeof(Received<K>);
+
+/// What an element takes once it is in the tree.
+template <int K>
+std::size_t bytesOf(const ElementShape& element) {
+  return Hierarchy::bytesOfNode + element.corners.size() * sizeof(glm::vec3) + valueBytesOfNode<K>;
+}
+
+}  // namespace
 
 template <int K>
 Transport<K>::Transport(const SolvedLight<K>& light, std::int32_t domain, Radiosity<K>& radiosity,
@@ -57,18 +70,55 @@ void Transport<K>::send(const std::vector<Columns<K>>& leaves, bool withOutside)
     const std::vector<Sender> outside = entering_.senders();
     senders.insert(senders.end(), outside.begin(), outside.end());
   }
-  transportLight(std::move(senders));
+  transportWithinMemory(senders);
   mergeGrown();
   pushPull();
   mend(powerOf(unshot_.radiosity_lm_m2), entering_lm, lamps_lm);
 }
 
 template <int K>
-void Transport<K>::transportLight(std::vector<Sender> senders) {
+std::size_t Transport<K>::roomBytes() const {
+  const std::size_t used = tree_.bytes() + valueBytes(tree_);
+  return used < settings_.memoryBytes ? settings_.memoryBytes - used : 0;
+}
+
+template <int K>
+void Transport<K>::stopGrowth() {
+  interactions_.mayGrow = false;
+  diagnoses.push_back(
+      {"S301",
+       "the memory allowed is used up: no further elements are made, the solution is complete at "
+       "the accuracy reached; allow more with --memory",
+       ""});
+}
+
+// Whether a step asks for more than there is room for does not depend on the order of its tasks. It is given
+// up as soon as it does and taken again by a coarser threshold, so all of the domain is as fine as the rest,
+// and elements that are not fine are not linked as if they were.
+template <int K>
+void Transport<K>::transportWithinMemory(const std::vector<Sender>& senders) {
+  constexpr float coarser = 4.0F;  // half as accurate
+  constexpr float coarsest = 1e9F;
+  room_ = roomBytes();
+  if (interactions_.mayGrow && room_ == 0) stopGrowth();
+  transportLight(senders);
+  if (!isOverfull()) return;
+  while (isOverfull() && coarser_ < coarsest) {
+    coarser_ *= coarser;
+    interactions_.threshold_lm *= coarser;
+    transportLight(senders);
+  }
+  stopGrowth();
+  if (isOverfull()) transportLight(senders);
+}
+
+template <int K>
+void Transport<K>::transportLight(const std::vector<Sender>& senders) {
+  grownBytes_ = 0;
   for (Work& work : work_) work = {};
   std::fill(received_.begin(), received_.end(), Received<K>{});
   std::fill(receivedByDirection_.begin(), receivedByDirection_.end(), SixReceived<K>{});
-  receive(receiverOf(tree_, 0), std::move(senders), work_[0]);
+  receive(receiverOf(tree_, 0), senders, work_[0]);
 }
 
 // The paper's TRANSPORT-LIGHT(p, q), turned about the receiver: all senders that the levels above have left
@@ -76,6 +126,7 @@ void Transport<K>::transportLight(std::vector<Sender> senders) {
 // lock.
 template <int K>
 void Transport<K>::receive(const Receiver& receiver, std::vector<Sender> senders, Work& work) {
+  if (isOverfull()) return;
   Incoming<K> incoming;
   if (receiver.isCluster()) incoming.six = &receivedByDirection_[receiver.node];
   std::vector<Sender> down = settle(receiver, std::move(senders), incoming, work);
@@ -192,6 +243,7 @@ void Transport<K>::descend(const Receiver& receiver, std::vector<Sender> senders
   work.grown.push_back(std::make_unique<Grown>(Grown{
       parentIsGrown, parentIsGrown ? receiver.grown : receiver.node, halve(shape, receiver.normal), {}, {}}));
   Grown& grown = *work.grown.back();
+  grownBytes_ += bytesOf<K>(grown.halves.first) + bytesOf<K>(grown.halves.second);
   const auto child = [&](const ElementShape& half, std::uint32_t which) {
     grown.spots[which] = spotsOn(half.corners, half.key);
     return Receiver{
@@ -236,14 +288,6 @@ void Transport<K>::mergeGrown() {
   }
   if (tree_.size() == before) return;
   unshot_.resize(tree_.size());
-  if (interactions_.mayGrow && tree_.bytes() + valueBytes(tree_) > settings_.memoryBytes) {
-    interactions_.mayGrow = false;
-    diagnoses.push_back(
-        {"S301",
-         "the memory allowed is used up: no further elements are made, the solution is complete at "
-         "the accuracy reached; allow more with --memory",
-         ""});
-  }
 }
 
 // PUSH-PULL of the paper on what this step received: irradiance goes down to the leaves.
@@ -323,12 +367,10 @@ Columns<K> Transport<K>::receivedPower() const {
   return powerOfLeaves([&](NodeIndex node) -> const Columns<K>& { return received_[node].irradiance_lx; });
 }
 
-// Of a node: what it sends and has received here, the sum and what is unshot where the steps are driven; of a
-// trunk's node its light by direction too.
+// Of a trunk's node its light by direction too.
 template <int K>
 std::size_t Transport<K>::valueBytes(const Hierarchy& tree) {
-  constexpr std::size_t ofNode = 3 * sizeof(Columns<K>) + 3 * sizeof(float) + sizeof(Received<K>);
-  return tree.size() * ofNode + tree.trunkSize() * (sizeof(Six<K>) + sizeof(SixReceived<K>));
+  return tree.size() * valueBytesOfNode<K> + tree.trunkSize() * (sizeof(Six<K>) + sizeof(SixReceived<K>));
 }
 
 // In a closed domain all power sent is received. Sampled visibility misses that by some tenths of a per cent,

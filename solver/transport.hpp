@@ -3,6 +3,8 @@
 // self link and PUSH-PULL. Shooting and gathering differ in what they hand to it.
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -48,7 +50,7 @@ class Transport {
   /// Sets what one interaction may err by, from the light that the domain starts with. [lm]
   void setFirstLight(float firstLight_lm);
   /// Sets it for what is sent from now on. [lm]
-  void setThreshold(float threshold_lm) { interactions_.threshold_lm = threshold_lm; }
+  void setThreshold(float threshold_lm) { interactions_.threshold_lm = coarser_ * threshold_lm; }
   [[nodiscard]] float threshold_lm() const { return interactions_.threshold_lm; }
 
   /// Of the last `send`.
@@ -78,7 +80,13 @@ class Transport {
     Tally tally;
   };
 
-  void transportLight(std::vector<Sender> senders);
+  void transportLight(const std::vector<Sender>& senders);
+  /// By the threshold, or by the least of its multiples whose elements find room in memory.
+  void transportWithinMemory(const std::vector<Sender>& senders);
+  /// Bytes that the tree may grow by.
+  [[nodiscard]] std::size_t roomBytes() const;
+  [[nodiscard]] bool isOverfull() const { return grownBytes_.load(std::memory_order_relaxed) > room_; }
+  void stopGrowth();
   void receive(const Receiver& receiver, std::vector<Sender> senders, Work& work);
   std::vector<Sender> settle(const Receiver& receiver, std::vector<Sender> senders, Incoming<K>& incoming,
                              Work& work);
@@ -110,6 +118,9 @@ class Transport {
   EnteringLight<K> entering_;
   Interactions<K> interactions_;
   Columns<K> entered_lm_;
+  float coarser_ = 1.0F;                    // than the threshold asked for
+  std::size_t room_ = 0;                    // bytes that a step may grow by
+  std::atomic<std::size_t> grownBytes_{0};  // in this step
   double sent_lm_ = 0.0, missed_lm_ = 0.0;
 };
 

@@ -332,11 +332,12 @@ TEST(Stability, AbsurdAccuracies) {
   expectSound(solved(scene.drawing.scene, scene.study), {.defect = 0.05});
 }
 
-Solved solvedWithin(Case scene, double accuracy, std::size_t bytes) {
+Solved solvedWithin(Case scene, double accuracy, std::size_t bytes, int threads = 0) {
   scene.study.accuracy = accuracy;
   SolveOptions options;
   options.pictures = false;
   options.memoryBytes = bytes;
+  options.threads = threads;
   Building building = buildingOf(scene.drawing.scene, scene.study);
   Solution solution = solve(building, scene.study, options);
   return {std::move(building), std::move(solution)};
@@ -358,6 +359,21 @@ TEST(Stability, MemoryReached) {
     EXPECT_FALSE(saysMemory(whole));
     EXPECT_LT(measuredErrors("within 64 KiB", room.sensors_lx(), whole.sensors_lx()).p95, 0.25);
   }
+}
+
+// The library takes 0.01 %, for which there is no room: it ends with what there is room for, which is the
+// same on any number of threads.
+TEST(Stability, AccuracyBeyondTheMemory) {
+  constexpr std::size_t bytes = std::size_t{8} << 20;
+  const Case scene = openRoom(0.5);
+  const Solved room = solvedWithin(scene, 1e-4, bytes);
+  expectSound(room, {});
+  EXPECT_TRUE(saysMemory(room));
+  EXPECT_LE(room.solution.hierarchyBytes, bytes);
+  EXPECT_GT(room.solution.elements, 5000U);
+  EXPECT_EQ(solvedWithin(scene, 1e-4, bytes, 1).sensors_lx(), room.sensors_lx());
+  const Solved whole = solvedWithin(scene, 2e-3, std::size_t{4} << 30);
+  EXPECT_LT(measuredErrors("within 8 MiB", room.sensors_lx(), whole.sensors_lx()).p95, fine);
 }
 
 // More light in, more out: a lamp is added to a room with a window, or its walls are whiter.
