@@ -11,6 +11,7 @@
 #include "luminaires.hpp"
 #include "ownframe.hpp"
 #include "rooms.hpp"
+#include "shutopenings.hpp"
 
 namespace clerestory {
 
@@ -73,6 +74,7 @@ Building makeBuilding(CleanModel model, const Study& study) {
   if (cutAtDoorways(building, airs)) rays = RayScene(building.model, building.innerGlass);
   findRooms(building, frame, rays, airs);
   partBackToBack(building);
+  tellShutOpenings(building, rays);
   checkLuminaires(building);
   turnOutOf(frame, building);
   if (!study.grids.empty()) layGrids(building, study, RayScene(building.model, building.innerGlass));

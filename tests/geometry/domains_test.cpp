@@ -376,9 +376,10 @@ TEST(Domains, BulgeOfOneDegreeIsInItsRoom) {
   EXPECT_NEAR(building.rooms[0].volume_m3, 3.0 * (12.0 + 2.0 * bulge_m), 1e-6);
 }
 
-// What nothing flies through joins no rooms: a keyhole of 20 x 50 mm leaves the room behind it dark.
+// What nothing flies through joins no rooms: a keyhole of 20 x 50 mm leaves the room behind it dark, and that
+// is told; a crack of 3 mm is a model's own.
 TEST(Domains, KeyholeJoinsNothingAndAHatchDoes) {
-  for (const double width_m : {0.02, 0.30}) {
+  for (const double width_m : {0.003, 0.006, 0.02, 0.30}) {
     SCOPED_TRACE(width_m);
     Drawing drawing;
     addRoomWithPane(drawing, kLow, {8, 3, 3}, {1.0, 1.0, 3.0, 2.0});
@@ -399,6 +400,11 @@ TEST(Domains, KeyholeJoinsNothingAndAHatchDoes) {
     EXPECT_EQ(building.portals[0].room, 0);
     const Room& behind = building.rooms[1];
     EXPECT_EQ(building.domains[static_cast<std::size_t>(behind.domain)].lit, width_m > 0.06);
+    const auto told = std::ranges::find(building.diagnoses, "G252", &Diagnosis::code);
+    ASSERT_EQ(told != building.diagnoses.end(), width_m > 0.004 && width_m < 0.06);
+    if (told == building.diagnoses.end()) continue;
+    EXPECT_LT(glm::length(*told->place_m - glm::dvec3(4.0, 1.5, 1.0 + 1.25 * width_m)), 0.06);
+    EXPECT_NE(told->message.find("12.00 m²"), std::string::npos) << told->message;
   }
 }
 

@@ -147,6 +147,22 @@ inline Case pinhole(double side_m, double reflectance) {
   return scene;
 }
 
+/// A room of 4 x 3 x 3 m with a pane, and behind a partition with a keyhole of 20 x 50 mm one without.
+inline Case keyhole() {
+  Case scene;
+  Drawing& drawing = scene.drawing;
+  addRoomWithPane(drawing, {0, 0, 0}, {8, 3, 3}, {1, 1, 3, 2});
+  const auto part = [&](double y0, double z0, double y1, double z1) {
+    drawing.face({{4, y0, z0}, {4, y1, z0}, {4, y1, z1}, {4, y0, z1}});
+  };
+  part(0, 0, 1.49, 3);
+  part(1.51, 0, 3, 3);
+  part(1.49, 0, 1.51, 1);
+  part(1.49, 1.05, 1.51, 3);
+  scene.study.grids = {gridOf({{2, 1.5, 0.85}, {6, 1.5, 0.85}})};
+  return scene;
+}
+
 /// A room with 3,000 triangles of 2 cm strewn through it, each turned its own way; all shines alike.
 inline Case tinyPolygons(double reflectance) {
   Case scene;

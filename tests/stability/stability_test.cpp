@@ -225,6 +225,19 @@ TEST(Stability, PinholeToTheSkyInAWhiteRoom) {
   }
 }
 
+// An opening too narrow to join airs leaves a room dark, but not in silence.
+TEST(Stability, RoomBehindAKeyholeIsToldToBeDark) {
+  for (const Solved& rooms : solvedAtThree(keyhole()).at) {
+    EXPECT_GT(rooms.sensors_lx().at(0), 0.0);
+    EXPECT_EQ(rooms.sensors_lx().at(1), 0.0);
+    const auto told = std::ranges::find(rooms.building.diagnoses, "G252", &Diagnosis::code);
+    ASSERT_NE(told, rooms.building.diagnoses.end());
+    EXPECT_NE(told->message.find("12.00 m²"), std::string::npos) << told->message;
+    ASSERT_TRUE(told->place_m);
+    EXPECT_LT(glm::length(*told->place_m - glm::dvec3(4.0, 1.5, 1.025)), 0.03);
+  }
+}
+
 TEST(Stability, ThousandsOfTinyPolygons) {
   expectFurnace(solvedAtThree(tinyPolygons(0.5)), 0.5);
 }
