@@ -44,7 +44,7 @@ class OpeningSearch {
       const glm::dvec3& from = pieces.points[corners[i]];
       const glm::dvec3 along = pieces.points[corners[(i + 1) % corners.size()]] - from;
       const double length_m = glm::length(along);
-      if (!(length_m > 0.0)) continue;
+      if (length_m < static_cast<double>(widths_m[0])) continue;
       const glm::dvec3 outward = glm::cross(along / length_m, front);
       const double tries = std::clamp(std::floor(length_m / betweenTries_m), 1.0, triesOfEdge);
       for (double k = 0.0; k < tries; ++k) {
@@ -73,6 +73,7 @@ class OpeningSearch {
                             const glm::vec3& normal, float width_m) const {
     constexpr auto all = RayScene::Barrier::opaqueAndGlass;
     const glm::vec3 from = middle + offPlane_m * normal;
+    if (rays_.meetsAny(from, -normal, all, 2.0F * offPlane_m)) return false;  // the plane goes on
     const auto behind = rays_.nearest(from, -normal, all);
     if (!isLit(behind, building_.sideDomain[side])) return false;
     const auto before = rays_.nearest(from, normal, all);
