@@ -22,9 +22,8 @@ Face describe(const Soup& soup, std::uint32_t index) {
   const auto corners = soup.faces[index];
   const glm::dvec3 vector = doubleAreaVector(soup.points, corners);
   const glm::dvec3 bentNormal = glm::normalize(vector);
-  const bool isBent = glm::length(soup.bentFrom[index]) > 0.0;
   Face face{index,
-            isBent ? soup.bentFrom[index] : bentNormal,
+            soup.isBent(index) ? soup.bentFrom[index] : bentNormal,
             bentNormal,
             glm::dvec3(0.0),
             0.5 * glm::length(vector),
@@ -70,8 +69,6 @@ class PlaneClusters {
     return cluster;
   }
 
-  [[nodiscard]] bool isBent(const Face& face) const { return glm::length(soup_.bentFrom[face.index]) > 0.0; }
-
   [[nodiscard]] bool fits(const Face& face, const Face& seed) const {
     const auto sineBetween = [](const glm::dvec3& a, const glm::dvec3& b) {
       return glm::length(glm::cross(a, b));
@@ -80,7 +77,7 @@ class PlaneClusters {
     const double thickness_m = std::max(face.thickness_m, 1e-9);
     const double angle_rad =
         std::min(0.5, tolerances_.coplanarAngle_rad + 4.0 * tolerances_.drawn_m / thickness_m);
-    const bool areBent = isBent(face) || isBent(seed);
+    const bool areBent = soup_.isBent(face.index) || soup_.isBent(seed.index);
     // Faces that the weld has bent are taken for the planes they were, and for those it may have made one.
     const double bentAngle_rad =
         std::min(tolerances_.displacedAngle_rad, 4.0 * tolerances_.weld_m / thickness_m);

@@ -50,6 +50,8 @@ struct Soup {
   /// #faces: the unit normal before the weld moved a corner, which may have warped the face a little; zero
   /// where it moved none.
   std::vector<glm::dvec3> bentFrom;
+
+  [[nodiscard]] bool isBent(std::size_t face) const { return bentFrom[face] != glm::dvec3(0.0); }
 };
 
 /// A maximal planar region: an outer ring, counterclockwise about its normal, and holes, clockwise.

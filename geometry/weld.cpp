@@ -429,8 +429,7 @@ void splitWarpedFaces(Soup& soup, const Tolerances& tolerances, CleanupCounts& c
       startAtSmallest(soup.points, corners);
       const glm::dvec3 vector = doubleAreaVector(soup.points, corners);
       if (glm::length(vector) < 2.0 * tolerances.degenerateArea_m2) continue;
-      const bool isBent = glm::length(soup.bentFrom[face]) > 0.0;
-      add(corners, face, isBent ? glm::normalize(vector) : glm::dvec3(0.0));
+      add(corners, face, soup.isBent(face) ? glm::normalize(vector) : glm::dvec3(0.0));
     }
   }
   soup.faces = std::move(result.faces);

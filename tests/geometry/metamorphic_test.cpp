@@ -11,7 +11,7 @@ const std::filesystem::path offices = std::filesystem::path(CLERESTORY_SAMPLES) 
 
 // 12 x 8 m less the column, 16 corners in whole millimetres on a circle of 0.2 m: 0.122174 m² by the shoelace
 // formula. From the two gaps between the bookcases, 10 x 320 mm, hardly a look gets out. Left out are slits
-// of less than 1 cm²: at six ends of bookcases' backs 25 and 50 mm² within their sides.
+// of less than 2.5 cm²: at six ends of bookcases' backs 25 and 50 mm² within their sides.
 TEST(Office, FloorIsAllButTheColumn) {
   const Building building = buildingOf(read(offices / "office.obj"));
   ASSERT_EQ(building.rooms.size(), 1U);
