@@ -127,7 +127,7 @@ void tellShutOpenings(Building& building, const RayScene& rays) {
   char text[200];
   std::snprintf(
       text, sizeof text,
-      "rooms that nothing lights open to lit air by less than 6 cm, which counts as shut: %.2f m² of "
+      "rooms that nothing lights open to lit air by less than 6 cm, which counts as shut: %.2f m2 of "
       "floor stay dark; the widest opening, of %.0f mm or more, is named",
       floor_m2, 1000.0 * static_cast<double>(widest.width_m));
   const std::string& object = building.model.surfaces[building.model.pieces.surface[widest.piece]].name;
