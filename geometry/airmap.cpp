@@ -33,15 +33,19 @@ std::vector<std::uint32_t> piecesOf(const Building& building, std::int32_t domai
   return pieces;
 }
 
+/// Whether air is a domain's of which neither the surface below nor the one above is.
+enum class BetweenOthers { isNot, isAsked };
+
 /// A domain's air among what an upright line meets, from below. What touches is one surface.
 AirColumn columnOf(const Building& building, const RayScene& rays, std::int32_t domain,
-                   const glm::dvec2& place, std::span<const Meeting> meetings) {
+                   const glm::dvec2& place, std::span<const Meeting> meetings, BetweenOthers between) {
   constexpr double touching_m = 1e-4;
   constexpr double nearSurface_m = 0.1;
   // A floor or a ceiling may run on over a hollow wall: what is seen from between the two decides or, since
   // hardly anything is from between bookcases, from near the one that is ours.
   const auto isAir = [&](bool isOursBelow, bool isOursAbove, double low_m, double high_m) {
-    if (isOursBelow == isOursAbove) return isOursBelow;
+    if (isOursBelow && isOursAbove) return true;
+    if (!isOursBelow && !isOursAbove && between == BetweenOthers::isNot) return false;
     const double middle_m = 0.5 * (low_m + high_m);
     const double near_m = isOursBelow ? low_m + nearSurface_m : high_m - nearSurface_m;
     const bool hasNear = high_m - low_m > 2.0 * nearSurface_m;
@@ -88,7 +92,7 @@ AirColumn airColumn(const Building& building, const RayScene& rays, std::int32_t
     from.z += hit.distance_m + rayOffset_m;
     if (!isUpright(pieces, hit.piece)) meetings.push_back({heightOver(pieces, hit.piece, place), hit.piece});
   }
-  return columnOf(building, rays, domain, place, meetings);
+  return columnOf(building, rays, domain, place, meetings, BetweenOthers::isAsked);
 }
 
 AirMap::AirMap(const Building& building, const RayScene& rays, std::int32_t domain,
@@ -126,7 +130,8 @@ AirMap::AirMap(const Building& building, const RayScene& rays, std::int32_t doma
       const std::span<const Meeting> all = stacks.over(i);
       const auto first = std::ranges::find_if(
           all, [&](const Meeting& meeting) { return meeting.height_m >= bottom_m_ - beneath_m; });
-      columnOf_[cell] = columnOf(building, rays, domain, middleOf(cell), {first, all.end()});
+      columnOf_[cell] =
+          columnOf(building, rays, domain, middleOf(cell), {first, all.end()}, BetweenOthers::isNot);
       mayStop_[cell] = stacks.mayStop(i);
     }
   });

@@ -107,10 +107,10 @@ class FloorLooks {
   }
 
   /// By a ray from the place itself, over which the air belongs to the region that it sees close by: a wall
-  /// between tells them apart.
+  /// between tells them apart. Nothing where no region is close by.
   [[nodiscard]] std::optional<Look> fromLevel(const glm::dvec2& place, const Level& level) {
     const std::uint32_t cell = air_.map.cellAt(place);
-    if (cell == AirMap::none) return std::nullopt;
+    if (cell == AirMap::none || cellsOfRegions(cell, place).count == 0) return std::nullopt;
     columns_.push_back(airColumn(building_, rays_, air_.domain, place, air_.map.bottom_m()));
     AirColumn& column = columns_.back();
     std::int32_t region = -1;
@@ -140,12 +140,18 @@ class FloorLooks {
     return region >= 0 || !reachesUp ? region : regionSeenAt({place, high_m}, cell);
   }
 
-  [[nodiscard]] std::int32_t regionSeenAt(const glm::dvec3& place, std::uint32_t cell) const {
+  /// Some of nine cells, by distance.
+  struct NearCells {
     std::array<std::pair<double, std::uint32_t>, 9> cells;
     std::size_t count = 0;
+  };
+
+  /// Those that lie in a region, of a cell and the ones about it.
+  [[nodiscard]] NearCells cellsOfRegions(std::uint32_t cell, const glm::dvec2& place) const {
+    NearCells near;
     const auto offer = [&](std::uint32_t other) {
       if (other != AirMap::none && storey_.parted.region[other] >= 0)
-        cells[count++] = {glm::length(air_.map.middleOf(other) - glm::dvec2(place)), other};
+        near.cells[near.count++] = {glm::length(air_.map.middleOf(other) - place), other};
     };
     offer(cell);
     for (int way = 0; way < 4; ++way) {
@@ -153,10 +159,15 @@ class FloorLooks {
       offer(next);
       if (next != AirMap::none) offer(air_.map.neighbour(next, (way + 1) % 4));
     }
-    std::sort(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(count));
+    std::sort(near.cells.begin(), near.cells.begin() + static_cast<std::ptrdiff_t>(near.count));
+    return near;
+  }
+
+  [[nodiscard]] std::int32_t regionSeenAt(const glm::dvec3& place, std::uint32_t cell) const {
+    const NearCells near = cellsOfRegions(cell, glm::dvec2(place));
     const glm::vec3 from(place - rays_.origin());
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t other = cells[i].second;
+    for (std::size_t i = 0; i < near.count; ++i) {
+      const std::uint32_t other = near.cells[i].second;
       const glm::vec3 to(glm::dvec3(air_.map.middleOf(other), place.z) - rays_.origin());
       const bool isInAir = std::ranges::any_of(air_.map.spans(other), [&](const AirSpan& air) {
         return air.low_m < place.z && air.high_m > place.z;

@@ -72,11 +72,9 @@ TEST(FurtherModels, OpenPlanOfficeAndTutorialRoomAreOneRoom) {
 
 class RedrawnModels : public testing::TestWithParam<const char*> {};
 
-// A strip of 70 cm² below a cupboard's sliding doors in the furnished apartment is floor or not as points
-// move by a fraction of a micrometre.
 TEST_P(RedrawnModels, AreTheSameHoweverTheyAreDrawn) {
   const std::filesystem::path file = std::filesystem::path(CLERESTORY_MODELS) / GetParam();
-  drawn::expectSameHoweverDrawn(file, file.stem() != "2BedroomApartment");
+  drawn::expectSameHoweverDrawn(file);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, RedrawnModels,
