@@ -212,9 +212,10 @@ struct PaneSamples {
   std::vector<float> weights;
 };
 
+/// By the view of the pane from the element's middle, or, without it, by one from each point.
 template <int K>
-PaneSamples samplesOf(const PortalSender<K>& portal, const Receiver& element, std::uint32_t count, bool near,
-                      const SphericalPolygon& fromMiddle) {
+PaneSamples samplesOf(const PortalSender<K>& portal, const Receiver& element, std::uint32_t count,
+                      const std::optional<SphericalPolygon>& fromMiddle) {
   const Sequence onPortal(mixKeys(element.key, portal.portal));
   const Sequence onElement(mixKeys(element.key, 0x9a3e + std::uint64_t{portal.portal}));
   const glm::vec3 lift = rayOffset_m * element.normal;
@@ -224,18 +225,20 @@ PaneSamples samplesOf(const PortalSender<K>& portal, const Receiver& element, st
   for (std::uint32_t i = 0; i < count; ++i) {
     const glm::vec3 point =
         pointOnPolygon<glm::vec3>(element.corners, onElement(i, 2), onElement(i, 3)) + lift;
-    const glm::vec3 eye = near ? point : element.centre + lift;
-    std::optional<SphericalPolygon> fromPoint;
-    if (near) fromPoint.emplace(point, element.normal, portal.polygon);
-    const SphericalPolygon& seen = near ? *fromPoint : fromMiddle;
-    if (seen.solidAngle_sr() <= 0.0) continue;
-    const glm::vec3 direction = seen.direction(onPortal(i, 0), onPortal(i, 1));
+    const glm::vec3 eye = fromMiddle ? element.centre + lift : point;
+    const float u = onPortal(i, 0);
+    const float v = onPortal(i, 1);
+    const std::optional<SphericalSample> seen =
+        fromMiddle ? SphericalSample{fromMiddle->direction(u, v), fromMiddle->solidAngle_sr()}
+                   : sampleSeen(point, element.normal, portal.polygon, u, v);
+    if (!seen) continue;
+    const glm::vec3& direction = seen->direction;
     const float approach = glm::dot(direction, portal.inward);
     const float cosine = glm::dot(direction, element.normal);
     if (approach >= 0.0F || cosine <= 0.0F) continue;
     samples.ways.push_back(
         {point, eye + (glm::dot(portal.centre - eye, portal.inward) / approach) * direction});
-    samples.weights.push_back(static_cast<float>(seen.solidAngle_sr()) * cosine);
+    samples.weights.push_back(static_cast<float>(seen->solidAngle_sr) * cosine);
   }
   return samples;
 }
@@ -246,12 +249,15 @@ template <int K>
 PortalLight<K> elementLightFromPortal(const SolvedLight<K>& light, const PortalSender<K>& portal,
                                       const Receiver& element, const PortalSight& sight, float samples) {
   const World& world = light.world();
-  const SphericalPolygon fromMiddle(element.centre + rayOffset_m * element.normal, element.normal,
-                                    portal.polygon);
   // Near by, or where the middle sees nothing, each point of the element has a view of the pane of its own.
-  const bool near = isNear(portal, element) || fromMiddle.solidAngle_sr() <= 0.0;
-  const auto count = static_cast<std::uint32_t>(std::ceil(near ? std::max(samples, nearSamples) : samples));
-  const auto [ways, counts] = samplesOf(portal, element, count, near, fromMiddle);
+  std::optional<SphericalPolygon> fromMiddle;
+  if (!isNear(portal, element)) {
+    fromMiddle.emplace(element.centre + rayOffset_m * element.normal, element.normal, portal.polygon);
+    if (fromMiddle->solidAngle_sr() <= 0.0) fromMiddle.reset();
+  }
+  const float least = fromMiddle ? 0.0F : nearSamples;
+  const auto count = static_cast<std::uint32_t>(std::ceil(std::max(samples, least)));
+  const auto [ways, counts] = samplesOf(portal, element, count, fromMiddle);
   std::vector<std::uint8_t> blocked(ways.size());
   world.rays.occluded(ways, RayScene::Barrier::opaque, blocked);
   PortalLight<K> result;
