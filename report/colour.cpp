@@ -44,7 +44,7 @@ DisplayTransform::DisplayTransform() : processor_(std::make_unique<Processor>())
   const std::string file = environmentConfig();
   isShipped_ = file.empty();
   try {
-    std::istringstream shipped{std::string(shippedConfig)};
+    std::istringstream shipped{std::string(shippedConfig.text)};
     const ocio::ConstConfigRcPtr config =
         isShipped_ ? ocio::Config::CreateFromStream(shipped) : ocio::Config::CreateFromFile(file.c_str());
     const std::string space = sceneSpaceOf(config);

@@ -4,13 +4,14 @@
 
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "embedded.hpp"
 
 namespace clerestory {
 
 /// The config of OpenColorIO that comes with the program, as text: report/config.ocio.
-extern const std::string_view shippedConfig;
+extern const EmbeddedFile shippedConfig;
 
 /// The way from scene-linear Rec.709 to a display, by the config that the environment variable OCIO names or,
 /// where it is not set, by the shipped one: its default display and that display's default view.

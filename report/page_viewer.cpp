@@ -14,7 +14,6 @@
 #include "numbers.hpp"
 #include "page_parts.hpp"
 #include "scripts.hpp"
-#include "sha256.hpp"
 #include "viewermesh.hpp"
 
 namespace clerestory {
@@ -24,8 +23,8 @@ namespace {
 constexpr std::size_t mostElements = 600'000;
 
 /// A script's checksum as a content security policy names it.
-std::string policyHash(std::string_view script) {
-  const std::string hex = sha256(script);
+std::string policyHash(const EmbeddedFile& script) {
+  const std::string hex(script.sha256);
   std::string bytes;
   for (std::size_t i = 0; i < hex.size(); i += 2) {
     bytes.push_back(static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16)));
@@ -144,7 +143,7 @@ std::string controlsHtml() {
 }  // namespace
 
 bool hasViewer(const ReportInput& input) {
-  return !viewerScript.empty() && input.solution.mesh.size() > 0 &&
+  return !viewerScript.text.empty() && input.solution.mesh.size() > 0 &&
          input.solution.mesh.size() <= mostElements;
 }
 
@@ -153,8 +152,8 @@ std::string scriptPolicy(const ReportInput& input) {
 }
 
 std::string scriptsHtml(const ReportInput& input) {
-  std::string html = "<script>" + std::string(pageScript) + "</script>\n";
-  if (hasViewer(input)) html += "<script>" + std::string(viewerScript) + "</script>\n";
+  std::string html = "<script>" + std::string(pageScript.text) + "</script>\n";
+  if (hasViewer(input)) html += "<script>" + std::string(viewerScript.text) + "</script>\n";
   return html;
 }
 
@@ -162,7 +161,7 @@ std::string viewerSection(const ReportInput& input, const PlanScale& scale) {
   std::string html = sectionOpening("model", "The building in 3D", "screen");
   if (!hasViewer(input)) {
     const char* reason =
-        viewerScript.empty()
+        viewerScript.text.empty()
             ? "The program that wrote this page was built without its 3D viewer (npm was missing)."
         : input.solution.mesh.size() == 0 ? "There is nothing lit to show."
                                           : "The solution has too many elements for a page.";

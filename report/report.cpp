@@ -85,7 +85,7 @@ struct FalseColours {
 void writeViews(const fs::path& folder, const ReportInput& input, std::vector<PageView>& views) {
   if (views.empty()) return;
   const DisplayTransform display;
-  if (display.isShipped()) writeFile(folder / "config.ocio", shippedConfig);
+  if (display.isShipped()) writeFile(folder / "config.ocio", shippedConfig.text);
   std::vector<std::vector<float>> luminances;
   std::vector<std::vector<float>> illuminances;
   for (const PageView& view : views) {

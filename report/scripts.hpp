@@ -2,14 +2,14 @@
 // The page's scripts, put into the program when it is built.
 #pragma once
 
-#include <string_view>
+#include "embedded.hpp"
 
 namespace clerestory {
 
 /// Tables, plans, exposure, theme: report/viewer/page.js as it stands.
-extern const std::string_view pageScript;
+extern const EmbeddedFile pageScript;
 
-/// The bundled viewer; empty where the program was built without npm.
-extern const std::string_view viewerScript;
+/// The bundled viewer; its text is empty where the program was built without npm.
+extern const EmbeddedFile viewerScript;
 
 }  // namespace clerestory

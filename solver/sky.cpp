@@ -78,6 +78,19 @@ std::array<std::pair<double, double>, N> gaussLegendre() {
   return rule;
 }
 
+/// Mean of the indicatrix around the zenith, half of the ring from the sun's azimuth on.
+template <class Rule>
+double meanOfRing(const SkyShape& sky, double sunZenith, double cosZenith, double sinZenith,
+                  const Rule& rule) {
+  if (sky.c == 0.0 && sky.e == 0.0) return sky.base;
+  double mean = 0.0;
+  for (const auto& [y, weight] : rule)
+    mean += weight * std::max(indicatrix(sky, std::cos(sunZenith) * cosZenith +
+                                                  std::sin(sunZenith) * sinZenith * std::cos(pi * y)),
+                              0.0);
+  return mean;
+}
+
 /// Integral of gradation times indicatrix times cosine over the hemisphere: in panels that end at the sun's
 /// zenith angle and azimuth, where the indicatrix has its cusp.
 double horizontalPerScale(const SkyShape& sky, double sunZenith) {
@@ -88,12 +101,8 @@ double horizontalPerScale(const SkyShape& sky, double sunZenith) {
     for (const auto& [x, weight] : rule) {
       const double zenith = from + (to - from) * x, cosZenith = std::cos(zenith),
                    sinZenith = std::sin(zenith);
-      double ring = 0.0;
-      for (const auto& [y, ringWeight] : rule)
-        ring += ringWeight * std::max(indicatrix(sky, std::cos(sunZenith) * cosZenith +
-                                                          std::sin(sunZenith) * sinZenith * std::cos(pi * y)),
-                                      0.0);
-      sum += weight * (to - from) * cosZenith * sinZenith * std::max(gradation(sky, cosZenith), 0.0) * ring;
+      sum += weight * (to - from) * cosZenith * sinZenith * std::max(gradation(sky, cosZenith), 0.0) *
+             meanOfRing(sky, sunZenith, cosZenith, sinZenith, rule);
     }
   return 2.0 * pi * sum;
 }
