@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include <solver/formfactor.hpp>
@@ -50,29 +52,87 @@ Outline cutInFront(std::span<const glm::vec3> polygon, const dvec3& origin, cons
   return outline;
 }
 
-/// Integral of ln |point - x| over the edge from a, `length` long along the unit vector `along`; but for the
-/// term -length, which cancels around an outline.
-double innerIntegral(const dvec3& point, const dvec3& a, const dvec3& along, double length) {
-  constexpr double nothing = 1e-300;
-  const dvec3 way = a - point;
-  const double start = glm::dot(way, along);
-  const double end = start + length;
-  const double off2 = std::max(glm::dot(way, way) - start * start, 0.0);
-  const double logs =
-      end * std::log(off2 + end * end + nothing) - start * std::log(off2 + start * start + nothing);
-  const double off = std::sqrt(off2);
-  return 0.5 * logs + off * std::atan2(off * length, off2 + start * end);
+/// A value for each point of the outer rule. Loops over them have no branches, so that they become vector
+/// instructions; those of the mathematics library do not, and took a tenth of a solve.
+using OfPoints = std::array<double, 4>;
+
+/// ln x of normal positive numbers, to 1e-12: 2 atanh((m - 1) / (m + 1)) of a mantissa m in [1/√2, √2).
+OfPoints logOf(const OfPoints& x) {
+  constexpr std::uint64_t mantissa = 0x000fffffffffffffU;
+  constexpr std::uint64_t rootHalf = 0x3fe6a09e667f3bcdU;  // 1/√2
+  constexpr std::uint64_t twoTo52 = 0x4330000000000000U;
+  OfPoints result;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const std::uint64_t bits = std::bit_cast<std::uint64_t>(x[i]) - rootHalf;
+    const std::uint64_t raised = bits + (std::uint64_t{1024} << 52U);  // so that exponents are positive
+    const double exponent = std::bit_cast<double>((raised >> 52U) | twoTo52) - (0x1p52 + 1024.0);
+    const double m = std::bit_cast<double>((bits & mantissa) + rootHalf);
+    const double r = (m - 1.0) / (m + 1.0);
+    const double r2 = r * r;
+    const double series =
+        r2 * (1.0 / 3 + r2 * (1.0 / 5 + r2 * (1.0 / 7 + r2 * (1.0 / 9 + r2 * (1.0 / 11 + r2 / 13)))));
+    result[i] = exponent * std::numbers::ln2 + 2.0 * (r + r * series);
+  }
+  return result;
 }
 
-/// The outer integral, over the edge from b.
+/// The angle of (x, y), y >= 0, in [0, pi], to 1e-12; 0 at the origin.
+OfPoints angleOf(const OfPoints& x, const OfPoints& y) {
+  constexpr double tanEighth = 0.41421356237309503;  // tan(pi / 8)
+  constexpr double tiny = 1e-300;
+  using std::numbers::pi;
+  OfPoints result;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double wide = std::abs(x[i]);
+    const double low = std::min(wide, y[i]);
+    const double high = std::max(wide, y[i]) + tiny;
+    const bool isSteep = low > tanEighth * high;
+    const double t = (isSteep ? low - high : low) / (isSteep ? low + high : high);
+    const double t2 = t * t;
+    // The odd series, of which the first term that is left out is below 1e-12 at tan(pi / 8).
+    double series = 1.0 / 25;
+    for (int k = 23; k >= 1; k -= 2) series = 1.0 / k - t2 * series;
+    const double acute = (isSteep ? pi / 4 : 0.0) + t * series;
+    const double first = y[i] > wide ? pi / 2 - acute : acute;
+    result[i] = x[i] < 0.0 ? pi - first : first;
+  }
+  return result;
+}
+
+/// The outer integral, over the edge from b, of the integral of ln |point - x| over the edge from a, `length`
+/// long along the unit vector `along`; but for the term -length, which cancels around an outline.
 double pairIntegral(const dvec3& a, const dvec3& along, double length, const dvec3& b, const dvec3& edge) {
-  constexpr std::array<double, 4> place = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
-                                           0.93056815579702629};
-  constexpr std::array<double, 4> weight = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
-                                            0.17392742256872693};
+  constexpr OfPoints place = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
+                              0.93056815579702629};
+  constexpr OfPoints weight = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
+                               0.17392742256872693};
+  constexpr double nothing = 1e-300;
+  OfPoints start;
+  OfPoints off2;
+  OfPoints toStart2;
+  OfPoints toEnd2;
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    const dvec3 way = a - (b + place[i] * edge);
+    start[i] = glm::dot(way, along);
+    off2[i] = std::max(glm::dot(way, way) - start[i] * start[i], 0.0);
+    toStart2[i] = off2[i] + start[i] * start[i] + nothing;
+    toEnd2[i] = off2[i] + (start[i] + length) * (start[i] + length) + nothing;
+  }
+  OfPoints off;
+  OfPoints x;
+  OfPoints y;
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    off[i] = std::sqrt(off2[i]);
+    x[i] = off2[i] + start[i] * (start[i] + length);
+    y[i] = off[i] * length;
+  }
+  const OfPoints logOfStart = logOf(toStart2);
+  const OfPoints logOfEnd = logOf(toEnd2);
+  const OfPoints angle = angleOf(x, y);
   double sum = 0.0;
   for (std::size_t i = 0; i < place.size(); ++i)
-    sum += weight[i] * innerIntegral(b + place[i] * edge, a, along, length);
+    sum += weight[i] *
+           (0.5 * ((start[i] + length) * logOfEnd[i] - start[i] * logOfStart[i]) + off[i] * angle[i]);
   return sum;
 }
 
