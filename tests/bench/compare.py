@@ -50,13 +50,16 @@ def program_of(version):
         return str(pathlib.Path(version).resolve())
 
     def git(*arguments):
-        return subprocess.run(["git", "-C", PROJECT, *arguments], check=True, capture_output=True, text=True).stdout.strip()
+        return subprocess.run(["git", "-C", PROJECT, *arguments], capture_output=True, text=True)
 
-    commit = git("rev-parse", "--verify", version + "^{commit}")
+    commit = git("rev-parse", "--verify", "--quiet", version + "^{commit}").stdout.strip()
+    if not commit:
+        sys.exit(f"{version} is neither a program nor a commit")
     tree = PROJECT / "build/compare" / commit[:12]
     if not tree.is_dir():
-        git("worktree", "add", "--detach", str(tree), commit)
-    subprocess.run(["cmake", "--workflow", "--preset", "release"], cwd=tree, check=True, stdout=sys.stderr)
+        git("worktree", "add", "--detach", str(tree), commit).check_returncode()
+    for step in (["--preset", "release", "-DCLERESTORY_TESTS=OFF"], ["--build", "--preset", "release"]):
+        subprocess.run(["cmake", *step], cwd=tree, check=True, stdout=sys.stderr)
     return str(tree / "build/release/clerestory")
 
 
