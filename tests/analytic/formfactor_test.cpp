@@ -487,6 +487,17 @@ TEST(MeanFormFactor, TouchingAndNearPolygons) {
   expect(floor, {{0, 0, 0.03}, {0, 1, 0.03}, {1, 1, 0.03}, {1, 0, 0.03}}, 0.001);  // close over it
 }
 
+// Farther apart than they are wide the four points of the outer rule leave 1e-7 (its error falls by the
+// eighth power of 8 and more), and what is left are logarithms and angles: those of all lengths between 2
+// and 8.
+TEST(MeanFormFactor, PolygonsApartAgreeWithHottelsClosedForm) {
+  for (double distance = 2.0; distance < 8.0; distance *= 1.07) {
+    const Polygon above = {{0.3, 0, distance}, {0.3, 1, distance}, {1.3, 1, distance}, {1.3, 0, distance}};
+    const double exact = parallel({0, 1, 0, 1}, {0.3, 1.3, 0, 1}, distance);
+    EXPECT_NEAR(meanOf(horizontal(0, 1, 0, 1, 0), above), exact, 2e-6 * exact) << distance;
+  }
+}
+
 TEST(MeanFormFactor, OnlyWhatLiesInFrontCounts) {
   const Polygon floor = horizontal(0, 1, 0, 1, 0);
   // Half of the wall is below the floor's plane; half of the floor is behind the wall's.
