@@ -110,13 +110,15 @@ class FloorLooks {
   /// between tells them apart. Nothing where no region is close by.
   [[nodiscard]] std::optional<Look> fromLevel(const glm::dvec2& place, const Level& level) {
     const std::uint32_t cell = air_.map.cellAt(place);
-    if (cell == AirMap::none || cellsOfRegions(cell, place).count == 0) return std::nullopt;
+    if (cell == AirMap::none) return std::nullopt;
+    const NearCells near = cellsOfRegions(cell, place);
+    if (near.count == 0) return std::nullopt;
     columns_.push_back(airColumn(building_, rays_, air_.domain, place, air_.map.bottom_m()));
     AirColumn& column = columns_.back();
     std::int32_t region = -1;
     std::erase_if(column.spans, [&](const AirSpan& span) {
       if (!isInStorey(span)) return false;
-      const std::int32_t seen = regionSeenFrom(place, cell, span);
+      const std::int32_t seen = regionSeenFrom(place, near, span);
       if (region < 0) region = seen;
       return seen < 0;
     });
@@ -128,23 +130,23 @@ class FloorLooks {
   }
 
  private:
-  /// That of the nearest cell about a place that nothing hides from it: at a person's middle or, between
-  /// furniture, under the ceiling.
-  [[nodiscard]] std::int32_t regionSeenFrom(const glm::dvec2& place, std::uint32_t cell,
-                                            const AirSpan& span) const {
-    constexpr double most_m = 1.0;
-    const double low_m = span.low_m + std::min(0.5 * (span.high_m - span.low_m), most_m);
-    const double high_m = storey_.ceiling_m - underCeiling_m;
-    const std::int32_t region = regionSeenAt({place, low_m}, cell);
-    const bool reachesUp = span.high_m > high_m && high_m > low_m;
-    return region >= 0 || !reachesUp ? region : regionSeenAt({place, high_m}, cell);
-  }
-
   /// Some of nine cells, by distance.
   struct NearCells {
     std::array<std::pair<double, std::uint32_t>, 9> cells;
     std::size_t count = 0;
   };
+
+  /// That of the nearest cell about a place that nothing hides from it: at a person's middle or, between
+  /// furniture, under the ceiling.
+  [[nodiscard]] std::int32_t regionSeenFrom(const glm::dvec2& place, const NearCells& near,
+                                            const AirSpan& span) const {
+    constexpr double most_m = 1.0;
+    const double low_m = span.low_m + std::min(0.5 * (span.high_m - span.low_m), most_m);
+    const double high_m = storey_.ceiling_m - underCeiling_m;
+    const std::int32_t region = regionSeenAt({place, low_m}, near);
+    const bool reachesUp = span.high_m > high_m && high_m > low_m;
+    return region >= 0 || !reachesUp ? region : regionSeenAt({place, high_m}, near);
+  }
 
   /// Those that lie in a region, of a cell and the ones about it.
   [[nodiscard]] NearCells cellsOfRegions(std::uint32_t cell, const glm::dvec2& place) const {
@@ -163,8 +165,7 @@ class FloorLooks {
     return near;
   }
 
-  [[nodiscard]] std::int32_t regionSeenAt(const glm::dvec3& place, std::uint32_t cell) const {
-    const NearCells near = cellsOfRegions(cell, glm::dvec2(place));
+  [[nodiscard]] std::int32_t regionSeenAt(const glm::dvec3& place, const NearCells& near) const {
     const glm::vec3 from(place - rays_.origin());
     for (std::size_t i = 0; i < near.count; ++i) {
       const std::uint32_t other = near.cells[i].second;
