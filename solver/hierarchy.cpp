@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numeric>
 
+#include <geometry/parallel.hpp>
 #include <geometry/sampling.hpp>
 
 namespace clerestory {
@@ -285,6 +286,24 @@ NodeIndex Hierarchy::divide(NodeIndex parent, const ElementShape& first, const E
 NodeIndex Hierarchy::leafAt(NodeIndex node, const glm::vec3& point) const {
   while (!isLeaf(node)) node = childAt(node, point);
   return node;
+}
+
+// A look starts from the leaf that was found last, which may have been divided since.
+void Hierarchy::findSpotLeaves() {
+  spotLeaves.reserve(size());
+  while (spotLeaves.size() < size()) {
+    const auto node = static_cast<NodeIndex>(spotLeaves.size());
+    std::array<NodeIndex, spotsOfNode>& leaves = spotLeaves.emplace_back();
+    leaves.fill(node);
+    if (!isCluster(node)) continue;
+    for (std::size_t s = 0; s < spotsOfNode; ++s) leaves[s] = sides[spotSides[node][s]].root;
+  }
+  constexpr std::size_t together = 1024;
+  forEachIndex(size(), together, [&](std::size_t node) {
+    if (firstChild[node] == noNode) return;
+    for (std::size_t s = 0; s < spotsOfNode; ++s)
+      spotLeaves[node][s] = leafAt(spotLeaves[node][s], spots[node][s]);
+  });
 }
 
 std::size_t Hierarchy::bytes() const {

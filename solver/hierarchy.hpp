@@ -71,6 +71,8 @@ class Hierarchy {
   std::vector<glm::vec3> corners;
   std::vector<TreeSide> sides;
   std::vector<Spots> spots;
+  /// The leaves that hold the spots, as of the last call of `findSpotLeaves`.
+  std::vector<std::array<NodeIndex, spotsOfNode>> spotLeaves;
   /// Of the trunk's nodes: the sides that the spots lie on.
   std::vector<std::array<std::uint32_t, spotsOfNode>> spotSides;
   /// The sides in the trunk's order, in which those of any of its nodes stand together: #sides, their places;
@@ -112,13 +114,15 @@ class Hierarchy {
     const glm::vec4& plane = split[element];
     return glm::dot(glm::vec3(plane), point) + plane.w > 0.0F ? 1U : 0U;
   }
+  /// Looks up the leaves of all spots; to be called before they are asked for when the tree has grown.
+  void findSpotLeaves();
   /// The leaf of a side's tree that holds a point of the side.
   [[nodiscard]] NodeIndex leafAt(NodeIndex sideRoot, const glm::vec3& point) const;
 
   /// Bytes that any node takes beside its corners.
-  static constexpr std::size_t bytesOfNode = sizeof(glm::vec3) + 3 * sizeof(float) + 2 * sizeof(NodeIndex) +
-                                             sizeof(std::uint64_t) + 2 * sizeof(std::uint32_t) +
-                                             sizeof(glm::vec4) + sizeof(Spots);
+  static constexpr std::size_t bytesOfNode =
+      sizeof(glm::vec3) + 3 * sizeof(float) + 2 * sizeof(NodeIndex) + sizeof(std::uint64_t) +
+      2 * sizeof(std::uint32_t) + sizeof(glm::vec4) + sizeof(Spots) + spotsOfNode * sizeof(NodeIndex);
   /// Bytes that nodes take, without the values that run over them.
   [[nodiscard]] std::size_t bytes() const;
 

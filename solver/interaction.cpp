@@ -318,12 +318,13 @@ Columns<K> Interactions<K>::unevenLight(const Receiver& receiver, NodeIndex send
   float kernel = 0.0F;
   for (std::uint32_t i = 0; i < count; ++i) {
     const glm::vec3& from = (*receiver.spots)[(i + (turn >> 8U)) % spotsOfNode];
-    const glm::vec3& to = tree_.spots[sender][(i * (2U * (turn & 3U) + 1U) + (turn >> 16U)) % spotsOfNode];
+    const std::size_t there = (i * (2U * (turn & 3U) + 1U) + (turn >> 16U)) % spotsOfNode;
+    const glm::vec3& to = tree_.spots[sender][there];
     const glm::vec3 way = to - from;
     const float squared = std::max(glm::dot(way, way), nearest_m * nearest_m);
     const float own = std::max(glm::dot(way, receiver.normal), 0.0F) *
                       std::max(-glm::dot(way, normal), 0.0F) / (squared * squared);
-    const Columns<K>& sent = unshot_.radiosity_lm_m2[tree_.leafAt(sender, to)];
+    const Columns<K>& sent = unshot_.radiosity_lm_m2[tree_.spotLeaves[sender][there]];
     weighted += own * sent;
     radiosity += sent;
     kernel += own;

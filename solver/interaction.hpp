@@ -121,7 +121,6 @@ class Interactions {
                  std::size_t last) const;
   void shareLight(const Receiver& receiver, Candidate<K>& candidate, const RayBatch& batch, std::size_t first,
                   std::size_t last) const;
-  [[nodiscard]] const Columns<K>& radiosityAt(NodeIndex sender, std::size_t spot) const;
   [[nodiscard]] float uneven(NodeIndex sender) const;
   /// What is too weak for a link of its own comes by rays, but where links are to be stored or counted.
   [[nodiscard]] bool usesRays() const { return settings_.oracle == Oracle::error && !linksDark; }

@@ -187,7 +187,8 @@ void Interactions<K>::shareLight(const Receiver& receiver, Candidate<K>& candida
   std::array<float, 2> open{};
   std::array<float, 2> rays{};
   for (std::size_t ray = first; ray < last; ++ray) {
-    const Columns<K>& own = isEven ? unshot_.radiosity_lm_m2[sender] : radiosityAt(sender, batch.spot[ray]);
+    const Columns<K>& own = isEven ? unshot_.radiosity_lm_m2[sender]
+                                   : unshot_.radiosity_lm_m2[tree_.spotLeaves[sender][batch.spot[ray]]];
     const std::size_t child = hasChildren ? tree_.whichChild(receiver.node, batch.segments[ray].from) : 0;
     const float passing = batch.kernel[ray] * batch.seen[ray];
     sent += batch.kernel[ray] * own;
@@ -211,13 +212,6 @@ void Interactions<K>::shareLight(const Receiver& receiver, Candidate<K>& candida
     candidate.viewOnChild[child] = ofMean(open[0], open[1], child);
     for (int c = 0; c < K; ++c) candidate.onChild[child][c] = ofMean(arriving[0][c], arriving[1][c], child);
   }
-}
-
-/// Radiosity at a spot of a sender.
-template <int K>
-const Columns<K>& Interactions<K>::radiosityAt(NodeIndex sender, std::size_t spot) const {
-  const NodeIndex root = tree_.isCluster(sender) ? tree_.sides[tree_.spotSides[sender][spot]].root : sender;
-  return unshot_.radiosity_lm_m2[tree_.leafAt(root, tree_.spots[sender][spot])];
 }
 
 #define CLERESTORY_INSTANTIATE(K)                                               \

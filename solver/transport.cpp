@@ -61,6 +61,7 @@ void Transport<K>::setFirstLight(float firstLight_lm) {
 template <int K>
 void Transport<K>::send(const std::vector<Columns<K>>& leaves, bool withOutside) {
   pull(leaves);
+  tree_.findSpotLeaves();
   const bool enters = withOutside && !isOpen_;
   const Columns<K> entering_lm = enters ? entering_.portalFlux_lm() : Columns<K>{};
   const Columns<K> lamps_lm = enters ? entering_.lampFlux_lm() : Columns<K>{};
