@@ -23,6 +23,7 @@ using std::numbers::pi;
 
 constexpr std::size_t kMaxCorners = 32;  // of a part; larger polygons are summed as a fan of parts
 constexpr std::size_t kMaxClipped = 48;  // a cut drops a corner for every two it adds
+constexpr double kGrazing = 1e-14;       // squared sine of a height above the horizon that may be rounding
 constexpr double kTouching = 1e-24;      // squared ratio of lengths below which the shorter is rounding
 
 /// Corners as seen from the receiver, which is the origin.
@@ -199,6 +200,60 @@ double formFactor(const dvec3& point, const dvec3& normal, std::span<const Corne
   return std::min(std::abs(sum) / (2.0 * pi), 1.0);
 }
 
+/// A value for each of some points. Loops over them have no branches, so that they become vector
+/// instructions.
+using Lanes = std::array<double, 4>;
+struct LaneVectors {
+  Lanes x, y, z;
+};
+
+/// 2 pi times the form factors of four points at once, by the contour. Says no where that does not serve:
+/// where the polygon is small for one of them, or reaches down to its horizon, as one that it touches does.
+bool contourSums(const std::array<dvec3, 4>& points, const dvec3& normal, std::span<const glm::vec3> polygon,
+                 Lanes& sums) {
+  double spread = 0.0;
+  for (const glm::vec3& corner : polygon) {
+    const dvec3 d = dvec3(corner) - dvec3(polygon[0]);
+    spread = std::max(spread, glm::dot(d, d));
+  }
+  const auto seen = [&](const dvec3& corner, LaneVectors& v) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      v.x[i] = corner.x - points[i].x;
+      v.y[i] = corner.y - points[i].y;
+      v.z[i] = corner.z - points[i].z;
+    }
+  };
+  LaneVectors a, b;
+  seen(dvec3(polygon[0]), b);
+  Lanes serves;  // where it stays above zero
+  for (std::size_t i = 0; i < serves.size(); ++i)
+    serves[i] = spread - FastAngle::kSmall * (b.x[i] * b.x[i] + b.y[i] * b.y[i] + b.z[i] * b.z[i]);
+  sums = {};
+  seen(dvec3(polygon.back()), a);
+  for (const glm::vec3& corner : polygon) {
+    seen(dvec3(corner), b);
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const double aa = a.x[i] * a.x[i] + a.y[i] * a.y[i] + a.z[i] * a.z[i];
+      const double bb = b.x[i] * b.x[i] + b.y[i] * b.y[i] + b.z[i] * b.z[i];
+      const double ab = a.x[i] * b.x[i] + a.y[i] * b.y[i] + a.z[i] * b.z[i];
+      const double height = b.x[i] * normal.x + b.y[i] * normal.y + b.z[i] * normal.z;
+      const double ox = aa < bb ? a.x[i] : b.x[i], oy = aa < bb ? a.y[i] : b.y[i],
+                   oz = aa < bb ? a.z[i] : b.z[i];
+      const double ex = b.x[i] - a.x[i], ey = b.y[i] - a.y[i], ez = b.z[i] - a.z[i];
+      const double cx = oy * ez - oz * ey, cy = oz * ex - ox * ez, cz = ox * ey - oy * ex;
+      const double cross2 = cx * cx + cy * cy + cz * cz;
+      const double inverse = 1.0 / std::sqrt(aa * bb);
+      const double acute = FastAngle::overSine(1.0 - std::abs(ab) * inverse) * inverse;
+      const double obtuse = pi / std::sqrt(cross2) - acute;
+      sums[i] += (ab >= 0.0 ? acute : obtuse) * (cx * normal.x + cy * normal.y + cz * normal.z);
+      const double raised = height > 0.0 ? height * height - kGrazing * bb : -1.0;
+      serves[i] = std::min(serves[i], raised);
+    }
+    a = b;
+  }
+  return std::ranges::all_of(serves, [](double value) { return value > 0.0; });
+}
+
 /// A triangle of the receiver in the reference cubature, by two corners seen from the first.
 struct Triangle {
   dvec3 origin, first, second;
@@ -245,6 +300,20 @@ double pointToPolygon(glm::dvec3 point, glm::dvec3 normal, std::span<const glm::
 
 float pointToPolygon(glm::vec3 point, glm::vec3 normal, std::span<const glm::vec3> polygon) {
   return static_cast<float>(formFactor<FastAngle>(dvec3(point), dvec3(normal), polygon));
+}
+
+void pointsToPolygon(std::span<const glm::vec3> points, glm::vec3 normal, std::span<const glm::vec3> polygon,
+                     std::span<float> formFactors) {
+  std::array<dvec3, 4> four;
+  for (std::size_t first = 0; first < points.size(); first += four.size()) {
+    const std::size_t count = std::min(four.size(), points.size() - first);
+    for (std::size_t i = 0; i < four.size(); ++i) four[i] = dvec3(points[first + std::min(i, count - 1)]);
+    Lanes sums;
+    const bool together = contourSums(four, dvec3(normal), polygon, sums);
+    for (std::size_t i = 0; i < count; ++i)
+      formFactors[first + i] = together ? static_cast<float>(std::min(std::abs(sums[i]) / (2.0 * pi), 1.0))
+                                        : pointToPolygon(points[first + i], normal, polygon);
+  }
 }
 
 double polygonToPolygon(std::span<const glm::dvec3> receiver, std::span<const glm::dvec3> sender,

@@ -53,10 +53,13 @@ void Interactions<K>::measureNear(const Receiver& receiver, NodeIndex sender, fl
   float high = 0.0F;
   float sum = 0.0F;
   const std::size_t count = quadratureCount(receiver.corners);
+  std::array<glm::vec3, quadratureMost> points;
+  std::array<float, quadratureMost> formFactors;
+  for (std::size_t i = 0; i < count; ++i) points[i] = quadraturePoint(receiver.corners, receiver.centre, i);
+  pointsToPolygon(std::span(points).first(count), receiver.normal, polygon, formFactors);
   for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec3 point = quadraturePoint(receiver.corners, receiver.centre, i);
-    const bool inFront = glm::dot(point - tree_.centre[sender], normal) > 0.0F;
-    const float own = inFront ? pointToPolygon(point, receiver.normal, polygon) : 0.0F;
+    const bool inFront = glm::dot(points[i] - tree_.centre[sender], normal) > 0.0F;
+    const float own = inFront ? formFactors[i] : 0.0F;
     low = std::min(low, own);
     high = std::max(high, own);
     sum += own;

@@ -326,6 +326,32 @@ TEST(PointToPolygon, FloatAgreesWithDouble) {
   EXPECT_LT(worst, 2e-7);
 }
 
+TEST(PointsToPolygon, AgreeWithDoubleAtEachPoint) {
+  // Some see all of the polygon, some have it cut by their horizon, are far from it, or touch it.
+  Numbers numbers;
+  for (int i = 0; i < 40000; ++i) {
+    std::vector<glm::vec3> corners;
+    for (const dvec3& corner : regular(3 + i % 6, std::exp2(5.0 * numbers.next()), 0.0))
+      corners.emplace_back(corner);
+    const dvec3 middle = 4.0 * numbers.vector();
+    const double apart = std::exp2(4.0 * numbers.next());
+    std::array<glm::vec3, 6> points;
+    for (glm::vec3& point : points) point = glm::vec3(middle + apart * numbers.vector());
+    if (i % 10 == 0) points[1] = corners[0];
+    if (i % 10 == 1) points[2] = 0.5F * (corners[0] + corners[1]);
+    const glm::vec3 normal(numbers.unit());
+    const std::size_t count = 1 + static_cast<std::size_t>(i) % points.size();
+    std::array<float, 6> formFactors;
+    formFactors.fill(-1.0F);
+    pointsToPolygon(std::span(points).first(count), normal, corners, formFactors);
+    const Polygon same(corners.begin(), corners.end());
+    for (std::size_t k = 0; k < count; ++k)
+      EXPECT_NEAR(static_cast<double>(formFactors[k]), pointToPolygon(dvec3(points[k]), dvec3(normal), same),
+                  2e-7);
+    for (std::size_t k = count; k < points.size(); ++k) EXPECT_EQ(formFactors[k], -1.0F);
+  }
+}
+
 TEST(PointToPolygon, ContinuousAcrossTheAreaForm) {
   Numbers numbers;
   for (int i = 0; i < 2000; ++i) {

@@ -25,6 +25,10 @@ double pointToPolygon(glm::dvec3 point, glm::dvec3 normal, std::span<const glm::
 /// Error against the double form on the same corners: 1e-7 absolute; relative 2e-6 for plump polygons.
 float pointToPolygon(glm::vec3 point, glm::vec3 normal, std::span<const glm::vec3> polygon);
 
+/// The same from several points that share a normal, in less time than one by one. #points form factors.
+void pointsToPolygon(std::span<const glm::vec3> points, glm::vec3 normal, std::span<const glm::vec3> polygon,
+                     std::span<float> formFactors);
+
 /// Unoccluded form factor from a polygon to another, the mean of pointToPolygon over the receiver. [0..1]
 /// The receiver sees with its front, the counter-clockwise side; the sender counts from both. Adaptive
 /// cubature over triangles until its estimate of the absolute error is below the tolerance (or at a million
