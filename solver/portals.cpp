@@ -158,10 +158,14 @@ PortalSight lookAtPortal(const SolvedLight<K>& light, const PortalSender<K>& por
   float low = std::numeric_limits<float>::max();
   float high = 0.0F;
   const std::size_t count = quadratureCount(receiver.corners);
+  std::array<glm::vec3, quadratureMost> points;
+  std::array<float, quadratureMost> formFactors;
+  for (std::size_t i = 0; i < count; ++i) points[i] = quadraturePoint(receiver.corners, receiver.centre, i);
+  pointsToPolygon(std::span(points).first(count), receiver.normal, portal.polygon, formFactors);
   for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec3 point = quadraturePoint(receiver.corners, receiver.centre, i);
+    const glm::vec3& point = points[i];
     const bool inFront = glm::dot(point - portal.centre, portal.inward) > 0.0F;
-    const float own = inFront ? pointToPolygon(point, receiver.normal, portal.polygon) : 0.0F;
+    const float own = inFront ? formFactors[i] : 0.0F;
     const float own_lx = own > 0.0F ? own * exitanceTowards(light, portal, point) : 0.0F;
     low = std::min(low, own_lx);
     high = std::max(high, own_lx);
