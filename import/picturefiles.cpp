@@ -45,7 +45,7 @@ std::string whyNot() {
 
 Entry load() {
   void* const library =
-      dlopen(CLERESTORY_PICTURES, RTLD_NOW | RTLD_LOCAL);  // looks in the program's run path
+      dlopen(CLERESTORY_PICTURES, RTLD_LAZY | RTLD_LOCAL);  // looks in the program's run path
   return library == nullptr ? nullptr : reinterpret_cast<Entry>(dlsym(library, kEntry));
 }
 

@@ -43,6 +43,11 @@ void throwIf(const std::filesystem::path& file, const std::string& problem) {
     throw MachineError(file.filename().string() + ": the picture could not be written: " + problem);
 }
 
+/// Compressed in half the time of the usual level, for a tenth more bytes.
+PictureFiles::Attributes pngAttributes() {
+  return {{"oiio:ColorSpace", "sRGB"}, {"Software", "Clerestory"}, {"png:compressionLevel", 4}};
+}
+
 }  // namespace
 
 DisplayImage::DisplayImage(int width_px, int height_px, const DisplayColour& colour)
@@ -107,7 +112,7 @@ DisplayImage displayImage(const std::vector<float>& values, int width, int heigh
 void writeExr(const std::filesystem::path& file, const LuminanceImage& image, const ViewSettings& view,
               double scale) {
   PictureFiles::Attributes attributes = {
-      {"compression", "zip"},
+      {"compression", "zip:2"},
       {"oiio:ColorSpace", "lin_srgb"},
       {"Software", "Clerestory"},
       {"DateTime", "2000:01:01 00:00:00"},  // else the time of writing, and no two files are the same
@@ -128,11 +133,11 @@ void writeExr(const std::filesystem::path& file, const LuminanceImage& image, co
 
 void writePng16(const std::filesystem::path& file, const std::vector<float>& values, int width, int height) {
   throwIf(file, pictureFiles().writeFloats(file, width, height, values.data(), PictureDepth::unsigned16,
-                                           {{"oiio:ColorSpace", "sRGB"}, {"Software", "Clerestory"}}));
+                                           pngAttributes()));
 }
 
 void writePng(const std::filesystem::path& file, const DisplayImage& image, Shades shades) {
-  PictureFiles::Attributes attributes = {{"oiio:ColorSpace", "sRGB"}, {"Software", "Clerestory"}};
+  PictureFiles::Attributes attributes = pngAttributes();
   // PNG_FILTER_NONE: differences of neighbours hide from the compression that they are the same.
   if (shades == Shades::flat) attributes.emplace_back("png:filter", 8);
   throwIf(file, pictureFiles().writeBytes(file, image.width, image.height, image.bytes.data(), attributes));
