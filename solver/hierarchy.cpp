@@ -211,7 +211,7 @@ Hierarchy::Hierarchy(const Pieces& pieces, std::span<const std::uint32_t> sidesI
     weight.push_back(weightSum);
     firstChild.push_back(node.firstChild);
     treeSide.push_back(noNode);
-    split.emplace_back(0.0F);
+    split.emplace_back();
     spots.emplace_back();
   }
   trunkSize_ = size();
@@ -263,7 +263,7 @@ NodeIndex Hierarchy::addElement(const ElementShape& shape, std::uint32_t treeSid
   firstCorner.push_back(static_cast<std::uint32_t>(corners.size()));
   cornerCount.push_back(static_cast<std::uint32_t>(shape.corners.size()));
   corners.insert(corners.end(), shape.corners.begin(), shape.corners.end());
-  split.emplace_back(0.0F);
+  split.emplace_back();
   spots.push_back(spotsOn(shape.corners, shape.key));
   return node;
 }
@@ -279,12 +279,13 @@ NodeIndex Hierarchy::divide(NodeIndex parent, const ElementShape& first, const E
   const NodeIndex child = addElement(first, treeSide[parent]);
   addElement(second, treeSide[parent]);
   firstChild[parent] = child;
-  split[parent] = plane;
+  split[parent] = {plane, child};
   return child;
 }
 
 NodeIndex Hierarchy::leafAt(NodeIndex node, const glm::vec3& point) const {
-  while (!isLeaf(node)) node = childAt(node, point);
+  for (const Split* own = &split[node]; own->firstChild != noNode; own = &split[node])
+    node = own->firstChild + own->whichChild(point);
   return node;
 }
 

@@ -50,6 +50,17 @@ struct ElementShape {
   std::uint64_t key = 1;  ///< stable: from the piece's place in the canonical order and the path of division
 };
 
+/// Where an element is divided: the plane n·x + d, positive on the second child's side. The way down to a
+/// leaf reads nothing else, so the children are told here too; noNode: not divided.
+struct Split {
+  glm::vec4 plane{0.0F};
+  NodeIndex firstChild = noNode;
+
+  [[nodiscard]] NodeIndex whichChild(const glm::vec3& point) const {
+    return glm::dot(glm::vec3(plane), point) + plane.w > 0.0F ? 1U : 0U;
+  }
+};
+
 /// Nodes in arrays. The trunk (clusters and the sides' roots) comes first, then elements as they are made, so
 /// a child's index is always above its parent's. The two children of a node stand side by side.
 class Hierarchy {
@@ -67,7 +78,7 @@ class Hierarchy {
   std::vector<std::uint64_t> key;
   std::vector<std::uint32_t> firstCorner;  ///< into corners; clusters: bounding box's low and high
   std::vector<std::uint32_t> cornerCount;
-  std::vector<glm::vec4> split;  ///< divided elements: the plane n·x + d, positive on the second child's side
+  std::vector<Split> split;  ///< of divided elements
   std::vector<glm::vec3> corners;
   std::vector<TreeSide> sides;
   std::vector<Spots> spots;
@@ -111,8 +122,7 @@ class Hierarchy {
   }
   /// 0 for its first child, 1 for its second.
   [[nodiscard]] NodeIndex whichChild(NodeIndex element, const glm::vec3& point) const {
-    const glm::vec4& plane = split[element];
-    return glm::dot(glm::vec3(plane), point) + plane.w > 0.0F ? 1U : 0U;
+    return split[element].whichChild(point);
   }
   /// Looks up the leaves of all spots; to be called before they are asked for when the tree has grown.
   void findSpotLeaves();
@@ -120,9 +130,9 @@ class Hierarchy {
   [[nodiscard]] NodeIndex leafAt(NodeIndex sideRoot, const glm::vec3& point) const;
 
   /// Bytes that any node takes beside its corners.
-  static constexpr std::size_t bytesOfNode =
-      sizeof(glm::vec3) + 3 * sizeof(float) + 2 * sizeof(NodeIndex) + sizeof(std::uint64_t) +
-      2 * sizeof(std::uint32_t) + sizeof(glm::vec4) + sizeof(Spots) + spotsOfNode * sizeof(NodeIndex);
+  static constexpr std::size_t bytesOfNode = sizeof(glm::vec3) + 3 * sizeof(float) + 2 * sizeof(NodeIndex) +
+                                             sizeof(std::uint64_t) + 2 * sizeof(std::uint32_t) +
+                                             sizeof(Split) + sizeof(Spots) + spotsOfNode * sizeof(NodeIndex);
   /// Bytes that nodes take, without the values that run over them.
   [[nodiscard]] std::size_t bytes() const;
 
