@@ -130,7 +130,7 @@ void assumeWhatIsMissing(Study& study, const Stated& stated) {
                                          "left out.");
   }
   if (!stated.ground) {
-    study.assumptions.emplace_back("The ground reflects 0.2 of the light and is of uniform luminance.");
+    study.assumptions.emplace_back("The ground's reflectance is not stated: 20 % is taken.");
   }
   if (!stated.north) {
     study.assumptions.emplace_back("North is the direction of +y, and the site is at 47.37 degrees north.");

@@ -305,8 +305,8 @@ std::string assumptionsSection(const Page& page) {
     html += "<li>" + escapeHtml(withoutFolders(study, text)) + "</li>\n";
   }
   html += "<li>The ground reflects " + shortNumber(100.0 * study.groundReflectance) +
-          " % where the model draws none.</li>\n<li>" + allowancesText(study) + "</li>\n" +
-          unjudgedNorms(study) + "</ul>\n";
+          " % where the model draws none, and is of uniform luminance.</li>\n<li>" + allowancesText(study) +
+          "</li>\n" + unjudgedNorms(study) + "</ul>\n";
   if (page.input.diagnoses.empty()) {
     return html + "<p>Nothing in the model needed repair or attention.</p>\n</section>\n";
   }
