@@ -26,9 +26,8 @@ if(MSVC)
   target_compile_options(clerestory_our_code INTERFACE /W4 /WX /permissive- /fp:precise /arch:AVX2)
 else()
   # -ffp-contract=off: a fused multiply-add rounds once where the compiler likes, so results would depend on it.
-  # The next two change no result: nobody reads errno or floating-point traps, and roots and choices stay in vectors.
   target_compile_options(clerestory_our_code INTERFACE
-    -Wall -Wextra -Wpedantic -Wconversion -Werror -ffp-contract=off -fno-math-errno -fno-trapping-math)
+    -Wall -Wextra -Wpedantic -Wconversion -Werror -ffp-contract=off)
   # g++ 12 sees overlapping copies in "text" + std::string() (its bug 105651).
   target_compile_options(clerestory_our_code INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
