@@ -56,7 +56,8 @@ struct RayBatch {
 template <int K>
 class Interactions {
  public:
-  /// `exitance_lm_m2` (#sides of the tree): of what shines by itself.
+  /// `exitance_lm_m2` (#sides of the tree): of what shines by itself. Before a step in which the tree is
+  /// larger than it was, its `findSpotLeaves` is to be called.
   Interactions(const World& world, const Hierarchy& tree, const Unshot<K>& unshot,
                std::span<const Columns<K>> exitance_lm_m2, const TransportSettings& settings);
 

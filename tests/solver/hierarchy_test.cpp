@@ -166,11 +166,9 @@ TEST(Hierarchy, TrunkAddsUp) {
   }
 }
 
-TEST(Hierarchy, LeafHoldsThePoint) {
-  Tree tree = boxTree();
-  Hierarchy& hierarchy = tree.hierarchy;
-  std::mt19937 random(3);
-  for (int i = 0; i < 400; ++i) {
+// Divides leaves by chance.
+void grow(Hierarchy& hierarchy, int divisions, std::mt19937& random) {
+  for (int i = 0; i < divisions; ++i) {
     std::vector<NodeIndex> leaves;
     for (NodeIndex node = 0; node < hierarchy.size(); ++node) {
       if (hierarchy.isLeaf(node)) leaves.push_back(node);
@@ -180,6 +178,33 @@ TEST(Hierarchy, LeafHoldsThePoint) {
     const NodeIndex child = hierarchy.divide(parent, halves.first, halves.second, halves.plane);
     EXPECT_FLOAT_EQ(hierarchy.area_m2[child] + hierarchy.area_m2[child + 1], hierarchy.area_m2[parent]);
   }
+}
+
+TEST(Hierarchy, LeavesOfSpotsAreKnownAsItGrows) {
+  Tree tree = boxTree();
+  Hierarchy& hierarchy = tree.hierarchy;
+  std::mt19937 random(5);
+  for (int round = 0; round < 3; ++round) {
+    grow(hierarchy, 100, random);
+    hierarchy.findSpotLeaves();
+    ASSERT_EQ(hierarchy.spotLeaves.size(), hierarchy.size());
+    for (NodeIndex node = 0; node < hierarchy.size(); ++node) {
+      for (std::size_t s = 0; s < spotsOfNode; ++s) {
+        const NodeIndex leaf = hierarchy.spotLeaves[node][s];
+        EXPECT_TRUE(hierarchy.isLeaf(leaf));
+        EXPECT_EQ(hierarchy.normal(leaf), hierarchy.spotNormal(node, s));
+        EXPECT_LE(outside_m(hierarchy.spots[node][s], hierarchy.polygon(leaf), hierarchy.normal(leaf)),
+                  rounding_m);
+      }
+    }
+  }
+}
+
+TEST(Hierarchy, LeafHoldsThePoint) {
+  Tree tree = boxTree();
+  Hierarchy& hierarchy = tree.hierarchy;
+  std::mt19937 random(3);
+  grow(hierarchy, 400, random);
   const Sequence sequence(11);
   for (const TreeSide& side : hierarchy.sides) {
     const std::vector<glm::vec3> whole(hierarchy.polygon(side.root).begin(),

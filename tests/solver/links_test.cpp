@@ -35,6 +35,7 @@ struct ScreenedRoom {
         panel(sideOf({0, 0, -1}, 1.0F)) {
     const Halves halves = halve(tree.shape(floor), tree.normal(floor));
     tree.divide(floor, halves.first, halves.second, halves.plane);
+    tree.findSpotLeaves();
     unshot.resize(tree.size());
   }
 
