@@ -22,7 +22,7 @@ constexpr float raysOfSure = 2.0F;        // times as many as were asked for: no
 constexpr float unevenMost = 0.02F;       // of all light, between points that another lies between
 constexpr float noiseMost = 3.0F;         // deviations that light may be off without being an outlier
 constexpr float deviationOfGrain = 0.5F;  // of what one ray brings by chance: it meets the thing or not
-constexpr float apartMost = 8.0F;         // above it a weight of e^-apart is nothing
+constexpr float apartMost = 8.0F;         // above it a weight of e^-apart is next to nothing
 constexpr int smoothingSteps = 4;         // each doubles the reach: 30 tiles after four
 
 template <int K>
