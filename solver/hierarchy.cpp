@@ -291,6 +291,7 @@ NodeIndex Hierarchy::leafAt(NodeIndex node, const glm::vec3& point) const {
 
 // A look starts from the leaf that was found last, which may have been divided since.
 void Hierarchy::findSpotLeaves() {
+  if (spotLeaves.size() == size()) return;  // nothing was divided since
   spotLeaves.reserve(size());
   while (spotLeaves.size() < size()) {
     const auto node = static_cast<NodeIndex>(spotLeaves.size());

@@ -52,19 +52,13 @@ void Interactions<K>::measureNear(const Receiver& receiver, NodeIndex sender, fl
   float low = 1.0F;
   float high = 0.0F;
   float sum = 0.0F;
-  const std::size_t count = quadratureCount(receiver.corners);
-  std::array<glm::vec3, quadratureMost> points;
-  std::array<float, quadratureMost> formFactors;
-  for (std::size_t i = 0; i < count; ++i) points[i] = quadraturePoint(receiver.corners, receiver.centre, i);
-  pointsToPolygon(std::span(points).first(count), receiver.normal, polygon, formFactors);
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool inFront = glm::dot(points[i] - tree_.centre[sender], normal) > 0.0F;
-    const float own = inFront ? formFactors[i] : 0.0F;
+  const SeenFromPoints seen(receiver, polygon, tree_.centre[sender], normal);
+  for (const float own : std::span(seen.formFactors).first(seen.count)) {
     low = std::min(low, own);
     high = std::max(high, own);
     sum += own;
   }
-  link.formFactor = sum / static_cast<float>(count);
+  link.formFactor = sum / static_cast<float>(seen.count);
   if (apart > touchingApart && std::max(receiver.corners.size(), polygon.size()) <= contourCornersMost) {
     link.formFactor = meanFormFactor(receiver.corners, receiver.normal, receiver.area_m2, polygon, normal);
   }

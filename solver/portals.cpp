@@ -158,20 +158,15 @@ PortalSight lookAtPortal(const SolvedLight<K>& light, const PortalSender<K>& por
   }
   float low = std::numeric_limits<float>::max();
   float high = 0.0F;
-  const std::size_t count = quadratureCount(receiver.corners);
-  std::array<glm::vec3, quadratureMost> points;
-  std::array<float, quadratureMost> formFactors;
-  for (std::size_t i = 0; i < count; ++i) points[i] = quadraturePoint(receiver.corners, receiver.centre, i);
-  pointsToPolygon(std::span(points).first(count), receiver.normal, portal.polygon, formFactors);
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec3& point = points[i];
-    const bool inFront = glm::dot(point - portal.centre, portal.inward) > 0.0F;
-    const float own = inFront ? formFactors[i] : 0.0F;
-    const float own_lx = own > 0.0F ? own * exitanceTowards(light, portal, point) : 0.0F;
+  const SeenFromPoints seen(receiver, portal.polygon, portal.centre, portal.inward);
+  const auto count = static_cast<float>(seen.count);
+  for (std::size_t i = 0; i < seen.count; ++i) {
+    const float own = seen.formFactors[i];
+    const float own_lx = own > 0.0F ? own * exitanceTowards(light, portal, seen.points[i]) : 0.0F;
     low = std::min(low, own_lx);
     high = std::max(high, own_lx);
-    sight.formFactor += own / static_cast<float>(count);
-    sight.light_lx += own_lx / static_cast<float>(count);
+    sight.formFactor += own / count;
+    sight.light_lx += own_lx / count;
   }
   sight.rise_lx = cornerRise * (high - low);
   if (isNear(portal, receiver)) {

@@ -2,6 +2,8 @@
 // What receives light in a shooting step: a node of the tree, or an element that was made in this step.
 #pragma once
 
+#include <solver/formfactor.hpp>
+
 #include "hierarchy.hpp"
 
 namespace clerestory {
@@ -47,6 +49,24 @@ inline glm::vec3 quadraturePoint(std::span<const glm::vec3> corners, const glm::
   const std::size_t corner = corners.size() <= quadratureMost ? i : i * corners.size() / quadratureMost;
   return centre + share * (corners[corner] - centre);
 }
+
+/// Such points of an element, and the form factor from each to a planar polygon; 0 from behind its plane.
+struct SeenFromPoints {
+  std::size_t count;
+  std::array<glm::vec3, quadratureMost> points;
+  std::array<float, quadratureMost> formFactors;
+
+  SeenFromPoints(const Receiver& receiver, std::span<const glm::vec3> polygon, const glm::vec3& onPlane,
+                 const glm::vec3& front)
+      : count(quadratureCount(receiver.corners)) {
+    for (std::size_t i = 0; i < count; ++i) points[i] = quadraturePoint(receiver.corners, receiver.centre, i);
+    pointsToPolygon(std::span(points).first(count), receiver.normal, polygon, formFactors);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!(glm::dot(points[i] - onPlane, front) > 0.0F)) formFactors[i] = 0.0F;
+    }
+  }
+};
+
 inline constexpr float cornerRise = 1.7F;  ///< of the whole rise between such points
 inline constexpr float touchingApart =
     0.5F;  ///< (radii) / distance above which such points may miss the rise
