@@ -35,6 +35,16 @@ struct BrightPart {
   float exitance_lm_m2;  ///< mean, of the strongest kind of light
 };
 
+/// How far the light of a solve may be off, two standard deviations. Shares are calibrated on the reference
+/// scenes (docs/validation.md).
+struct SolverError {
+  double surfaces = 0.0;   ///< share of a surface's mean
+  double reflected = 0.0;  ///< share of the reflected light at a sensor
+  double even_lx =
+      0.0;            ///< anywhere: interactions err by shares of all light, which are more of a dark place's
+  double gaps = 0.0;  ///< share of a sensor's light where panes show blades
+};
+
 /// The light of one domain after the solve.
 template <int K>
 struct Radiosity {
@@ -47,7 +57,7 @@ struct Radiosity {
   Sunlight sunlight{};                         ///< the beam; empty without sun
   std::vector<BrightPart> brightParts{};       ///< elements that points look at apart; none is within another
   std::vector<std::uint8_t> isInBrightPart{};  ///< #nodes, or empty
-  double solverError = 0.0;                    ///< relative, of reflected light that is gathered from it
+  SolverError solverError{};
 
   /// Irradiance of a point of a leaf: of its plane if there is one, else its mean.
   [[nodiscard]] Columns<K> irradianceAt(NodeIndex leaf, const glm::vec3& point) const {

@@ -241,10 +241,10 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
     value.illuminance_lx = value.direct_lx + value.reflected_lx;
     const double sampling_lx =
         2.0 * static_cast<double>(std::hypot(arriving.directDeviation_lx, arriving.reflectedDeviation_lx));
-    // What panes show of blades is as uncertain as what is reflected indoors.
-    const double solved_lx =
-        value.reflected_lx + (light.showsGaps() ? luminanceOf(layout.totalColour(arriving.direct_lx)) : 0.0);
-    value.error_lx = std::hypot(sampling_lx, light.of(domain)->solverError * solved_lx);
+    const SolverError& solver = light.of(domain)->solverError;
+    const double gaps_lx = light.showsGaps() ? solver.gaps * value.illuminance_lx : 0.0;
+    value.error_lx =
+        std::hypot(std::hypot(sampling_lx, gaps_lx), solver.reflected * value.reflected_lx, solver.even_lx);
   });
   return values;
 }

@@ -29,7 +29,6 @@ struct Tuning {
   GatherSettings sensors;
   PictureSettings views;
   PlainSettings plain;
-  double solverError;  ///< relative, of reflected light that a sensor gathers in a domain of one room
 };
 
 Tuning tuningFor(double accuracy, const SolveOptions& options) {
@@ -41,7 +40,6 @@ Tuning tuningFor(double accuracy, const SolveOptions& options) {
   tuning.sensors.rays = static_cast<std::uint32_t>(std::clamp(128.0 * finer, 32.0, 4096.0));
   tuning.sensors.deviationMost = static_cast<float>(0.2 * accuracy);
   tuning.views = picturesFor(accuracy);
-  tuning.solverError = 0.0075 + 0.5 * accuracy;
   tuning.plain.elementSize_m = static_cast<float>(0.4 / std::sqrt(finer));
   tuning.plain.raysPerElement = static_cast<std::uint32_t>(std::max(128.0 * finer, 8.0));
   tuning.plain.direct = {static_cast<float>(15.0 * finer), static_cast<float>(2.0 * finer)};
@@ -53,6 +51,15 @@ Tuning tuningFor(double accuracy, const SolveOptions& options) {
     tuning.sensors = {{ofPolygons, ofPolygons}, *options.sensorRays};
   }
   return tuning;
+}
+
+/// The threshold falls with the root of the rooms, so the error of each still grows with their number,
+/// slowly.
+SolverError solverError(double accuracy, double rooms, double meanReflected_lm_m2) {
+  return {.surfaces = (0.0075 + 0.5 * accuracy) * std::pow(rooms, 0.125),
+          .reflected = (0.0125 + 0.05 * accuracy) * std::pow(rooms, 0.25),
+          .even_lx = 0.27 * accuracy * std::pow(rooms, 0.25) * meanReflected_lm_m2,
+          .gaps = 0.025 + 0.25 * accuracy};
 }
 
 std::vector<std::uint32_t> sidesOf(const Building& building, std::int32_t domain) {
@@ -157,9 +164,8 @@ void solveDomains(const World& world, const Study& study, const SolveOptions& op
                                           importanceOf(world, study, domain, sides));
     const double rooms = roomsAsked(world, domain, tree);
     SolvedDomain<K> solved = solveDomain(light, domain, std::move(tree), options, tuning, rooms);
-    // The threshold falls with the root of the rooms, so the error of each still grows with their number,
-    // slowly: the power was calibrated on the floor of twelve offices (docs/validation.md).
-    solved.radiosity.solverError = tuning.solverError * std::pow(rooms, 0.125);
+    solved.radiosity.solverError = solverError(
+        study.accuracy, rooms, luminanceOf(world.layout.totalColour(solved.meanReflected_lm_m2())));
     solution.iterations.insert(solution.iterations.end(), solved.statistics.begin(), solved.statistics.end());
     if (!air.open) solution.balances.push_back(solved.balance);
     for (Diagnosis& diagnosis : solved.diagnoses) addDiagnosis(solution.diagnoses, std::move(diagnosis));

@@ -85,6 +85,19 @@ void SolvedDomain<K>::inheritSunlight(std::size_t before) {
 }
 
 template <int K>
+Columns<K> SolvedDomain<K>::meanReflected_lm_m2() const {
+  const Hierarchy& tree = radiosity.tree;
+  Columns<K> sum_lm;
+  float area_m2 = 0.0F;
+  for (NodeIndex node = 0; node < tree.size(); ++node) {
+    if (tree.isCluster(node) || !tree.isLeaf(node)) continue;
+    sum_lm += tree.area_m2[node] * reflected(node, radiosity.irradiance_lx[node]);
+    area_m2 += tree.area_m2[node];
+  }
+  return (1.0F / area_m2) * sum_lm;
+}
+
+template <int K>
 Columns<K> SolvedDomain<K>::meanReflectance() const {
   Columns<K> sum;
   float area_m2 = 0.0F;

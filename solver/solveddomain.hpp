@@ -36,6 +36,9 @@ struct SolvedDomain {
   [[nodiscard]] Columns<K> reflected(NodeIndex leaf, const Columns<K>& irradiance_lx) const {
     return radiosity.reflectance[radiosity.tree.treeSide[leaf]] * irradiance_lx;
   }
+  /// Mean over their area of what sides reflect, but of the sun's beam, whose place is exact: what a place in
+  /// a closed domain receives of that, on average.
+  [[nodiscard]] Columns<K> meanReflected_lm_m2() const;
   /// Mean reflectance of all sides, glass as it reflects inwards.
   [[nodiscard]] Columns<K> meanReflectance() const;
 

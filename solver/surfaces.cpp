@@ -72,7 +72,7 @@ std::vector<SurfaceValue> measureSurfaces(const SolvedLight<K>& light, ElementMe
       if (row.elements == 0) {
         row.surface = world.pieces().surface[piece];
         row.room = room;
-        row.solverError = radiosity->solverError;
+        row.solverError = radiosity->solverError.surfaces;
         row.illuminanceMin_lx = row.illuminanceMax_lx = illuminance_lx;
       }
       ++row.elements;

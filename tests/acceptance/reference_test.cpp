@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whole studies of the reference rooms against Radiance: the first honest point of error, held from here on.
+#include <algorithm>
+#include <limits>
+
 #include "program.hpp"
 
 namespace clerestory {
@@ -19,9 +22,33 @@ std::vector<ReferencePoint> withNeighbours(const std::vector<ReferencePoint>& po
   return all;
 }
 
+double medianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// What is promised of error_lx, as shares of the true illuminance: with twice the reference's deviation in
+/// squares it covers the difference at 95 % of the sensors, and its median is at most `statedMost` and five
+/// times the difference's.
+void expectHonest(const std::vector<double>& stated, const std::vector<double>& deviation,
+                  const std::vector<double>& difference, double statedMost, const std::string& where) {
+  double covered = 0.0;
+  for (std::size_t i = 0; i < stated.size(); ++i)
+    covered += difference[i] <= std::hypot(stated[i], 2.0 * deviation[i]) ? 1.0 : 0.0;
+  EXPECT_GE(covered, 0.95 * static_cast<double>(stated.size())) << where;
+  EXPECT_LE(medianOf(stated), std::min(statedMost, 5.0 * medianOf(difference))) << where;
+}
+
+/// The accuracy; behind blades at fine more is stated, since what is left out there is more.
+double statedMost(const std::string& room, const std::string& accuracy) {
+  if (room == "louvres" && accuracy == "fine") return std::numeric_limits<double>::infinity();
+  return accuracy == "draft" ? 0.1 : accuracy == "standard" ? 0.05 : 0.02;
+}
+
 // A reference room as a user would run it, with the sensors of its reference. Those at the edge of a sun
 // patch are left out: the reference's sun is a point, ours a disc. Where the reference knows its own error,
-// error_lx and twice that, added in squares, are to cover the difference at 95 % of the sensors.
+// error_lx is held to it.
 GridErrors errorsOfRoom(const std::string& name, const std::string& table, const std::string& accuracy,
                         const std::string& sections = "") {
   const std::size_t spots = sections.empty() ? 1 : spotsInSun;
@@ -36,7 +63,9 @@ GridErrors errorsOfRoom(const std::string& name, const std::string& table, const
   const CsvTable sensors(place.study("study.toml --quiet --accuracy " + accuracy) / "sensors.csv");
   std::vector<double> ours;
   std::vector<double> truth;
-  double covered = 0.0;
+  std::vector<double> stated;
+  std::vector<double> deviation;
+  std::vector<double> difference;
   for (std::size_t i = 0; i < reference.size(); ++i) {
     EXPECT_NEAR(sensors.number(spots * i, "x_m"), reference[i].place_m[0],
                 1e-6);  // rows keep the order of the points
@@ -51,13 +80,12 @@ GridErrors errorsOfRoom(const std::string& name, const std::string& table, const
     if (most_lx - least_lx > 5000.0) continue;  // a fifth of the beam that the glass lets in
     ours.push_back(sensors.number(spots * i, "illuminance_lx"));
     truth.push_back(reference[i].value);
-    const double doubt_lx =
-        std::hypot(sensors.number(spots * i, "error_lx"), 2.0 * reference[i].standardDeviation);
-    covered += std::abs(ours.back() - truth.back()) <= doubt_lx ? 1.0 : 0.0;
+    stated.push_back(sensors.number(spots * i, "error_lx") / truth.back());
+    deviation.push_back(reference[i].standardDeviation / truth.back());
+    difference.push_back(std::abs(ours.back() - truth.back()) / truth.back());
   }
-  if (table.ends_with("_paths")) {
-    EXPECT_GE(covered, 0.95 * static_cast<double>(ours.size())) << name << ' ' << table << ' ' << accuracy;
-  }
+  if (table.ends_with("_paths"))
+    expectHonest(stated, deviation, difference, statedMost(name, accuracy), name + " " + table + " " + accuracy);
   EXPECT_GE(ours.size() + 20, reference.size());
   return measuredErrors(name + " " + table + " " + accuracy, ours, truth);
 }
@@ -94,6 +122,7 @@ TEST(Reference, FurnishedOfficeKeepsToTheAccuracyAskedFor) {
 // Twelve furnished offices, every sixth of their sensors. With sun at fine it would take too long here;
 // docs/validation.md has it.
 TEST(Reference, FloorOfOfficesKeepsToTheAccuracyAskedFor) {
+  expectWithin(errorsOfRoom("floor", "overcast_paths", "draft"), 0.1, 0.005);
   expectWithin(errorsOfRoom("floor", "overcast_paths", "standard"), 0.05, 0.005);
   expectWithin(errorsOfRoom("floor", "overcast_paths", "fine"), 0.02, 0.005);
   expectWithin(errorsOfRoom("floor", "clear_paths", "standard", clearSky), 0.05, 0.006);
@@ -107,6 +136,7 @@ TEST(Reference, LouvresKeepToTheAccuracyAskedFor) {
   expectWithin(errorsOfRoom("louvres", "overcast_paths", "standard"), 0.05, 0.005);
   expectWithin(errorsOfRoom("louvres", "overcast_paths", "fine"), 0.02, 0.005);
   expectWithin(errorsOfRoom("louvres", "clear_paths", "standard", clearSky), 0.05, 0.006);
+  errorsOfRoom("louvres", "clear_paths", "fine", clearSky);  // what it states of itself is
 }
 
 // Radiance's tables are up to 3 % off the paths at the back of the room (docs/validation.md).
@@ -121,6 +151,7 @@ TEST(Reference, OfficesAgreeWithRadiance) {
 // 21 March, 10 o'clock, with sun; every second sensor.
 TEST(Reference, OfficesWithSun) {
   for (const std::string name : {"refoffice", "furnished"}) {
+    expectWithin(errorsOfRoom(name, "clear_paths", "draft", clearSky), 0.1, 0.005);
     expectWithin(errorsOfRoom(name, "clear_paths", "standard", clearSky), 0.05, 0.005);
   }
   expectWithin(errorsOfRoom("furnished", "clear_paths", "fine", clearSky), 0.02, 0.005);
