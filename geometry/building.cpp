@@ -6,6 +6,7 @@
 #include <geometry/rays.hpp>
 
 #include "backtoback.hpp"
+#include "covered.hpp"
 #include "cut.hpp"
 #include "domains.hpp"
 #include "luminaires.hpp"
@@ -73,8 +74,9 @@ Building makeBuilding(CleanModel model, const Study& study) {
   const std::vector<RoomAir> airs = airOfRooms(building, rays);
   if (cutAtDoorways(building, airs)) rays = RayScene(building.model, building.innerGlass);
   findRooms(building, frame, rays, airs);
-  partBackToBack(building);
   tellShutOpenings(building, rays);
+  darkenCovered(building);
+  partBackToBack(building);
   checkLuminaires(building);
   turnOutOf(frame, building);
   if (!study.grids.empty()) layGrids(building, study, RayScene(building.model, building.innerGlass));

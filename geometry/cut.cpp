@@ -260,14 +260,28 @@ std::vector<std::uint32_t> cutWhereCrossed(Pieces& pieces, const std::vector<Mat
 void followCut(Building& building, std::size_t before, std::span<const std::uint32_t> wholeOf) {
   std::vector<std::uint32_t> partOf(before);  // glass is not cut: its only part
   std::vector<std::int32_t> sideDomain;
+  std::vector<std::int32_t> sideRoom;  // none before rooms are known
   std::vector<bool> innerGlass;
   for (std::uint32_t piece = 0; piece < wholeOf.size(); ++piece) {
     partOf[wholeOf[piece]] = piece;
     sideDomain.push_back(building.sideDomain[2 * wholeOf[piece]]);
     sideDomain.push_back(building.sideDomain[2 * wholeOf[piece] + 1]);
+    for (std::uint32_t side = 2 * wholeOf[piece]; side < 2 * wholeOf[piece] + 2 && !building.sideRoom.empty();
+         ++side)
+      sideRoom.push_back(building.sideRoom[side]);
     innerGlass.push_back(building.innerGlass[wholeOf[piece]]);
   }
+  for (Room& room : building.rooms) {
+    std::vector<std::uint32_t> floorPieces;
+    for (const std::uint32_t whole : room.floorPieces) {
+      const auto parts = std::ranges::equal_range(wholeOf, whole);
+      for (auto part = parts.begin(); part != parts.end(); ++part)
+        floorPieces.push_back(static_cast<std::uint32_t>(part - wholeOf.begin()));
+    }
+    room.floorPieces = std::move(floorPieces);
+  }
   building.sideDomain = std::move(sideDomain);
+  building.sideRoom = std::move(sideRoom);
   building.innerGlass = std::move(innerGlass);
   for (Portal& portal : building.portals) portal.piece = partOf[portal.piece];
 }

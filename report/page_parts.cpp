@@ -47,7 +47,7 @@ std::string figureHtml(const std::string& label, const std::string& value, const
 }
 
 std::string errorText(const GridMetrics& metrics) {
-  return "± " + fixedNumber(metrics.p95ErrorEstimate_pct, 1);
+  return "± " + roundedNumber(metrics.p95ErrorEstimate_pct, 2);
 }
 
 std::string sectionOpening(const std::string& id, const std::string& title, const std::string& style) {

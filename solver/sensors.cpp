@@ -19,6 +19,7 @@ namespace {
 constexpr std::uint32_t samplesMost = 65536;  // of a polygon or the hemisphere
 constexpr int roundsMost = 8;                 // of twice as many
 constexpr std::uint32_t raysOfDisc = 32;      // to the sun's disc, from a sensor
+constexpr double evenErrorMost = 0.25;        // of what is reflected at a sensor
 constexpr float missedBetween = 1.0F;         // samples: of one sample's share of the light
 
 /// How sure light is when more samples are decided on. What all samples have missed, the reveal at the edge
@@ -243,8 +244,9 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
         2.0 * static_cast<double>(std::hypot(arriving.directDeviation_lx, arriving.reflectedDeviation_lx));
     const SolverError& solver = light.of(domain)->solverError;
     const double gaps_lx = light.showsGaps() ? solver.gaps * value.illuminance_lx : 0.0;
+    const double even_lx = std::min(solver.even_lx, evenErrorMost * value.reflected_lx);
     value.error_lx =
-        std::hypot(std::hypot(sampling_lx, gaps_lx), solver.reflected * value.reflected_lx, solver.even_lx);
+        std::hypot(std::hypot(sampling_lx, gaps_lx), solver.reflected * value.reflected_lx, even_lx);
   });
   return values;
 }

@@ -66,12 +66,15 @@ TEST(Crossings, ScreensThatRunThroughEachOtherAreCutAndSaid) {
   EXPECT_EQ(crossingsOf(building), 2U);
 }
 
-TEST(Crossings, FurnitureThatTouchesCutsNothing) {
+TEST(Crossings, FurnitureThatTouchesIsNoCrossing) {
   std::uint32_t floor = 0;
   Drawing drawing = roomWithFloor(floor);
   const std::size_t before = buildingOf(drawing.scene).model.pieces.size();
   addBox(drawing, {4, 1, 0.1}, {4.4, 1.4, 0.6}, wood, addObject(drawing, "stool"));
-  EXPECT_EQ(buildingOf(drawing.scene).model.pieces.size(), before + 6);
+  const Building building = buildingOf(drawing.scene);
+  EXPECT_EQ(crossingsOf(building), 0U);
+  EXPECT_EQ(building.model.pieces.size(), before + 6 + 4)
+      << "the floor: what it covers, and four parts around it";
 }
 
 }  // namespace

@@ -171,7 +171,7 @@ TEST(Stability, CoplanarFacesOverlap) {
   rugs.drawing.face({{1, 1, 0}, {3, 1, 0}, {3, 2, 0}, {1, 2, 0}}, wood, rug);
   rugs.drawing.face({{2, 1.5, 0}, {3.5, 1.5, 0}, {3.5, 3, 0}, {2, 3, 0}}, wood,
                     addObject(rugs.drawing, "second rug"));
-  const Three with = solvedAtThree(rugs, {.defect = 0.06});
+  const Three with = solvedAtThree(rugs);
   const Three without = solvedAtThree(litRoom(0.5));
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_LT(measuredErrors("rugs", with.at[i].sensors_lx(), without.at[i].sensors_lx()).p95,
