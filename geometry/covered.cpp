@@ -20,10 +20,12 @@ constexpr double coveredLeast_m2 = 0.05;  // a chair's legs are not worth a cut
 
 /// A piece that lies on another in one plane.
 struct Cover {
-  std::uint32_t upper, lower;
-  std::uint32_t upperSide;  ///< of the upper one, that looks away from the lower one
-  std::uint32_t lowerSide;  ///< of the lower one, that is covered
+  std::uint32_t upperSide;  ///< that looks away from the lower one
+  std::uint32_t lowerSide;  ///< that is covered
   bool isGuess;             ///< both might be seen
+
+  [[nodiscard]] std::uint32_t upper() const { return upperSide / 2; }
+  [[nodiscard]] std::uint32_t lower() const { return lowerSide / 2; }
 };
 
 /// Finds which of two pieces lies on the other.
@@ -51,7 +53,7 @@ class Covers {
                                isLit(largeSide(1)) && !isLit(smallSide(1))};
     if (stands[0] != stands[1]) {
       const std::uint32_t back = stands[1] ? 1U : 0U;
-      return Cover{small, large, smallSide(back), largeSide(back), false};
+      return Cover{smallSide(back), largeSide(back), false};
     }
     // Of two that are drawn for opposite sides each has its own (partBackToBack).
     const bool areDrawnAlike = glm::dot(drawnNormal(pieces, a), drawnNormal(pieces, b)) > 0.0;
@@ -64,7 +66,7 @@ class Covers {
     std::uint32_t back = pieces.isDrawnForBack[large] ? 1U : 0U;
     if (!isShared(back)) back ^= 1U;
     if (!isShared(back)) return std::nullopt;
-    return Cover{small, large, smallSide(back), largeSide(back), true};
+    return Cover{smallSide(back), largeSide(back), true};
   }
 
  private:
@@ -80,17 +82,17 @@ class Covers {
 /// Tells what is a guess in a room: of each object the largest piece.
 void tellGuesses(Building& building, const std::vector<Cover>& covers) {
   const Pieces& pieces = building.model.pieces;
-  const auto area_m2 = [&](const Cover& cover) { return pieces.area_m2[cover.upper]; };
+  const auto area_m2 = [&](const Cover& cover) { return pieces.area_m2[cover.upper()]; };
   std::map<std::uint32_t, Cover> largest;  // by surface
   for (const Cover& cover : covers) {
     if (!cover.isGuess || building.sideRoom[cover.lowerSide] < 0 || area_m2(cover) < coveredLeast_m2)
       continue;
-    Cover& known = largest.try_emplace(pieces.surface[cover.upper], cover).first->second;
+    Cover& known = largest.try_emplace(pieces.surface[cover.upper()], cover).first->second;
     if (area_m2(cover) > area_m2(known)) known = cover;
   }
   if (largest.empty()) return;
   const auto placeOf = [&](const Cover& cover) {
-    const auto corners = pieces.polygons[cover.upper];
+    const auto corners = pieces.polygons[cover.upper()];
     glm::dvec3 sum(0.0);
     for (const std::uint32_t corner : corners) sum += pieces.points[corner];
     return sum / static_cast<double>(corners.size());
@@ -138,7 +140,8 @@ void darkenCovered(Building& building) {
     darken(building, cover.lowerSide);
     darken(building, cover.upperSide ^ 1U);
     const double offset_m = rayOffset_m;
-    move(pieces, cover.lower, (cover.lowerSide % 2 == 0 ? -offset_m : offset_m) * pieces.normal[cover.lower]);
+    move(pieces, cover.lower(),
+         (cover.lowerSide % 2 == 0 ? -offset_m : offset_m) * pieces.normal[cover.lower()]);
   }
 }
 

@@ -40,9 +40,8 @@ struct BrightPart {
 struct SolverError {
   double surfaces = 0.0;   ///< share of a surface's mean
   double reflected = 0.0;  ///< share of the reflected light at a sensor
-  double even_lx =
-      0.0;            ///< anywhere: interactions err by shares of all light, which are more of a dark place's
-  double gaps = 0.0;  ///< share of a sensor's light where panes show blades
+  double even_lx = 0.0;    ///< at any sensor alike: interactions err by shares of all light
+  double gaps = 0.0;       ///< share of a sensor's light where panes show blades
 };
 
 /// The light of one domain after the solve.
