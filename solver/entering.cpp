@@ -10,6 +10,7 @@
 #include <geometry/sampling.hpp>
 
 #include "lamplight.hpp"
+#include "otherways.hpp"
 
 namespace clerestory {
 
@@ -91,8 +92,7 @@ Verdict EnteringLight<K>::receiveFromPortal(const Receiver& receiver, const Port
   const float deviation = std::max(0.35F, 0.25F * portal.deviation);
   constexpr float fewest = 2.0F;
   constexpr float most = 64.0F;
-  constexpr float looksPerThreshold = 4.0F;  // e^-4 of what is worth a threshold is missed
-  constexpr float looksMost = 4096.0F;
+  constexpr float looksLeast = 32.0F, looksPerThreshold = 4.0F;
   const PortalSight sight = lookAtPortal(light_, portal, receiver);
   if (sight.light_lx <= 0.0F) return Verdict::nothing;
   const float power_lm = sight.light_lx * receiver.weight;
@@ -118,12 +118,11 @@ Verdict EnteringLight<K>::receiveFromPortal(const Receiver& receiver, const Port
   tally.rays += light.rays;
   // A shadow that slips between the few spots does not slip between the samples.
   if (isUneven(light.visible)) return Verdict::refineReceiver;
-  // Were an element divided where one sample meets the pane, and left dark where none does, what is seen
-  // through a door would be too dark on average: then so many look that what all of them miss is little.
+  // Where no sample meets the pane, so many more look that what all of them miss is little.
   if (light.visible <= 0.0F && light.rays > 0 && isUneven(1.0F / static_cast<float>(light.rays))) {
-    const float looks = std::min(looksPerThreshold * power_lm / limits.threshold_lm, looksMost);
-    if (seesPortal(world_, portal, receiver, static_cast<std::uint32_t>(looks), tally.rays))
-      return Verdict::refineReceiver;
+    const Target pane{portal.polygon, glm::vec3(0.0F), 0x5ee5 + std::uint64_t{portal.portal}};
+    const float looks = looksLeast + looksPerThreshold * power_lm / limits.threshold_lm;
+    if (findsWay(world_, receiver, pane, Way::open, looks, tally.rays)) return Verdict::refineReceiver;
   }
   incoming.own.irradiance_lx += light.illuminance_lx;
   return Verdict::accept;

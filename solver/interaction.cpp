@@ -12,6 +12,7 @@
 #include <solver/formfactor.hpp>
 
 #include "mirrored.hpp"
+#include "otherways.hpp"
 #include "weak.hpp"
 
 namespace clerestory {
@@ -21,6 +22,7 @@ constexpr float touching_m = 1e-5F;  // below this a point counts as in a plane
 // Calibrated on the furnished office (docs/validation.md): errors of surfaces against time.
 constexpr float raysInsteadOfLinks = 32.0F;  // up to so many, links are not even looked for
 constexpr float weakRaysLeast = 16.0F, weakRaysMost = 256.0F;
+constexpr float looksPerThreshold = 8.0F;
 constexpr std::uint32_t raysToPanes = 16;
 constexpr float darkerBySender = 0.2F;  // thresholds that a sender's own shadow may take off
 constexpr float clusterTakes = 5.0F;    // thresholds that a cluster takes as one mean
@@ -247,14 +249,56 @@ void Interactions<K>::receiveMirrored(const Receiver& receiver, Incoming<K>& inc
   tally.rays += raysToPanes;
 }
 
+// By the share of the domain's light that a link could carry, were all as bright as each other but for what
+// shines by itself: independent of what is unshot, so a link computed anew is the one that was cached.
 template <int K>
-Verdict Interactions<K>::judgeSeen(const Receiver& receiver, const Candidate<K>& candidate) const {
+std::uint32_t Interactions<K>::raysOf(const Receiver& receiver, const Candidate<K>& candidate) const {
+  const float brilliance =
+      tree_.isCluster(candidate.sender) ? 1.0F : brilliance_[tree_.treeSide[candidate.sender]];
+  const float share = brilliance * candidate.link.formFactor * receiver.weight / totalWeight_;
+  if (share <= 0.0F) return 0;
+  if (share < 1e-6F) return 2;
+  if (share < 1e-5F) return 4;
+  if (share < 1e-4F) return 8;
+  return 16;
+}
+
+// Where one of few rays differs from the rest a receiver is divided. Were it taken as dark or as lit where
+// none does, it would be too dark on average behind a door, and too bright beside a table.
+template <int K>
+Verdict Interactions<K>::judgeSeen(const Receiver& receiver, const Candidate<K>& candidate,
+                                   Tally& tally) const {
   if (receiver.isCluster() || settings_.oracle == Oracle::transportedPower) return Verdict::accept;
+  const Verdict verdict = judgeVisible(receiver, candidate, candidate.visible);
+  const bool isDark = candidate.visible <= 0.0F;
+  const bool agree = isDark || candidate.visible >= 1.0F;
+  const std::uint32_t rays = raysOf(receiver, candidate);
+  const bool mayErr = agree && rays > 0 && !tree_.isCluster(candidate.sender) && missedThreshold_lm > 0.0F;
+  if (verdict != Verdict::accept || !mayErr) return verdict;
+  const float ofOne = 1.0F / static_cast<float>(rays);
+  const Verdict other = judgeVisible(receiver, candidate, isDark ? ofOne : 1.0F - ofOne);
+  return other != Verdict::accept && isOtherwise(receiver, candidate, tally) ? other : verdict;
+}
+
+/// Whether a link whose rays all passed, or none, has ways that do not.
+template <int K>
+bool Interactions<K>::isOtherwise(const Receiver& receiver, const Candidate<K>& candidate,
+                                  Tally& tally) const {
+  const NodeIndex sender = candidate.sender;
+  const Target target{tree_.polygon(sender), rayOffset_m * tree_.normal(sender),
+                      mixKeys(tree_.key[sender], 0x11)};
+  const float looks = looksPerThreshold * powerOf(receiver, candidate) / missedThreshold_lm;
+  return findsWay(world_, receiver, target, candidate.visible > 0.0F ? Way::blocked : Way::open, looks,
+                  tally.rays);
+}
+
+template <int K>
+Verdict Interactions<K>::judgeVisible(const Receiver& receiver, const Candidate<K>& candidate,
+                                      float visible) const {
   const NodeIndex sender = candidate.sender;
   const Link& link = candidate.link;
   const bool canRefineReceiver = canDivide(receiver);
   const bool canRefineSender = !tree_.isLeaf(sender);
-  const float visible = candidate.visible;
   const float arriving = link.formFactor * receiver.weight;
   const float power = unshot_.strength[sender] * arriving;
   const float receiverError = linearDeviation * power * visible * link.spreadOverReceiver();

@@ -63,6 +63,8 @@ class Interactions {
 
   /// lm that one interaction may err by, or move.
   float threshold_lm = 0.0F;
+  /// The same for what the rays of a link have missed, which is far less; 0: that is not looked for.
+  float missedThreshold_lm = 0.0F;
   /// Whether receivers may be divided further.
   bool mayGrow = true;
   /// Whether a sender that is dark as yet gets links too, for a step in which it is not.
@@ -78,7 +80,7 @@ class Interactions {
   void castRays(const Receiver& receiver, std::span<Candidate<K>> candidates, RayBatch& batch,
                 Tally& tally) const;
   /// ORACLE on what the rays have told.
-  [[nodiscard]] Verdict judgeSeen(const Receiver& receiver, const Candidate<K>& candidate) const;
+  Verdict judgeSeen(const Receiver& receiver, const Candidate<K>& candidate, Tally& tally) const;
   /// Adds the light that an accepted link brings.
   void add(Incoming<K>& incoming, const Receiver& receiver, const Candidate<K>& candidate) const;
   /// Power that a link moves, or could were nothing in its way. [lm]
@@ -115,6 +117,9 @@ class Interactions {
   [[nodiscard]] Verdict judgePower(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
   [[nodiscard]] Verdict judgeCluster(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
   [[nodiscard]] Verdict judgeElement(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
+  bool isOtherwise(const Receiver& receiver, const Candidate<K>& candidate, Tally& tally) const;
+  [[nodiscard]] Verdict judgeVisible(const Receiver& receiver, const Candidate<K>& candidate,
+                                     float visible) const;
   void measureNear(const Receiver& receiver, NodeIndex sender, float apart, Link& link) const;
   [[nodiscard]] std::uint32_t raysOf(const Receiver& receiver, const Candidate<K>& candidate) const;
   void layRays(const Receiver& receiver, const Candidate<K>& candidate, RayBatch& batch) const;

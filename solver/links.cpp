@@ -65,20 +65,6 @@ void Interactions<K>::measureNear(const Receiver& receiver, NodeIndex sender, fl
   link.spread = Link::packSpread(link.formFactor > 0.0F ? cornerRise * (high - low) / link.formFactor : 0.0F);
 }
 
-// By the share of the domain's light that a link could carry, were all as bright as each other but for what
-// shines by itself: independent of what is unshot, so a link computed anew is the one that was cached.
-template <int K>
-std::uint32_t Interactions<K>::raysOf(const Receiver& receiver, const Candidate<K>& candidate) const {
-  const float brilliance =
-      tree_.isCluster(candidate.sender) ? 1.0F : brilliance_[tree_.treeSide[candidate.sender]];
-  const float share = brilliance * candidate.link.formFactor * receiver.weight / totalWeight_;
-  if (share <= 0.0F) return 0;
-  if (share < 1e-6F) return 2;
-  if (share < 1e-5F) return 4;
-  if (share < 1e-4F) return 8;
-  return 16;
-}
-
 // Pairs of the spots of both ends, in an order that their keys choose. Rays end on the contents of clusters.
 template <int K>
 void Interactions<K>::layRays(const Receiver& receiver, const Candidate<K>& candidate,

@@ -204,26 +204,6 @@ float seenOfPortal(const World& world, const PortalSender<K>& portal, const Rece
   return static_cast<float>(seen) / static_cast<float>(spotsOfNode);
 }
 
-template <int K>
-bool seesPortal(const World& world, const PortalSender<K>& portal, const Receiver& receiver,
-                std::uint32_t looks, std::uint64_t& rays) {
-  constexpr std::uint32_t together = 32;
-  const Sequence sequence(mixKeys(receiver.key, 0x5ee5 + std::uint64_t{portal.portal}));
-  std::array<RayScene::Segment, together> segments;
-  std::array<std::uint8_t, together> blocked;
-  for (std::uint32_t first = 0; first < looks; first += together) {
-    for (std::uint32_t i = 0; i < together; ++i)
-      segments[i] = {
-          pointOnPolygon<glm::vec3>(receiver.corners, sequence(first + i, 0), sequence(first + i, 1)) +
-              rayOffset_m * receiver.normal,
-          pointOnPolygon<glm::vec3>(portal.polygon, sequence(first + i, 2), sequence(first + i, 3))};
-    world.rays.occluded(segments, RayScene::Barrier::opaque, blocked);
-    rays += together;
-    if (std::ranges::any_of(blocked, [](std::uint8_t isBlocked) { return isBlocked == 0; })) return true;
-  }
-  return false;
-}
-
 namespace {
 
 /// Ways from points of an element to points on a pane, and what each counts.
@@ -345,8 +325,6 @@ std::array<Columns<K>, 6> clusterLightFromPortal(const SolvedLight<K>& light, co
                                                      bool);                                              \
   template PortalSight lookAtPortal<K>(const SolvedLight<K>&, const PortalSender<K>&, const Receiver&);  \
   template float seenOfPortal<K>(const World&, const PortalSender<K>&, const Receiver&);                 \
-  template bool seesPortal<K>(const World&, const PortalSender<K>&, const Receiver&, std::uint32_t,      \
-                              std::uint64_t&);                                                           \
   template PortalLight<K> elementLightFromPortal<K>(const SolvedLight<K>&, const PortalSender<K>&,       \
                                                     const Receiver&, const PortalSight&, float);         \
   template std::array<Columns<K>, 6> clusterLightFromPortal<K>(                                          \

@@ -47,11 +47,6 @@ PortalSight lookAtPortal(const SolvedLight<K>& light, const PortalSender<K>& por
 template <int K>
 float seenOfPortal(const World& world, const PortalSender<K>& portal, const Receiver& receiver);
 
-/// Whether one of so many ways from all over a receiver to a pane is open; adds the rays that this took.
-template <int K>
-bool seesPortal(const World& world, const PortalSender<K>& portal, const Receiver& receiver,
-                std::uint32_t looks, std::uint64_t& rays);
-
 /// What samples between an element and a portal have told.
 template <int K>
 struct PortalLight {

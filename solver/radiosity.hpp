@@ -42,6 +42,7 @@ struct SolverError {
   double reflected = 0.0;  ///< share of the reflected light at a sensor
   double even_lx = 0.0;    ///< at any sensor alike: interactions err by shares of all light
   double gaps = 0.0;       ///< share of a sensor's light where panes show blades
+  double sunInGaps = 0.0;  ///< and of its sunlight there: what the room sends out, blades send back
 };
 
 /// The light of one domain after the solve.

@@ -243,7 +243,9 @@ GridValues senseGrid(const SolvedLight<K>& light, const SensorGrid& grid, const 
     const double sampling_lx =
         2.0 * static_cast<double>(std::hypot(arriving.directDeviation_lx, arriving.reflectedDeviation_lx));
     const SolverError& solver = light.of(domain)->solverError;
-    const double gaps_lx = light.showsGaps() ? solver.gaps * value.illuminance_lx : 0.0;
+    const double gaps_lx =
+        light.showsGaps() ? std::hypot(solver.gaps * value.illuminance_lx, solver.sunInGaps * value.sun_lx)
+                          : 0.0;
     const double even_lx = std::min(solver.even_lx, evenErrorMost * value.reflected_lx);
     value.error_lx =
         std::hypot(std::hypot(sampling_lx, gaps_lx), solver.reflected * value.reflected_lx, even_lx);

@@ -23,6 +23,11 @@
 namespace clerestory {
 namespace {
 
+/// What an interaction errs by, as a share of what it may: what is within the noise of that is smoothed away,
+/// and at 1 the floor of twelve offices loses a hundredth of its reflected light with it
+/// (docs/validation.md).
+constexpr float errorOfInteraction = 0.2F;
+
 /// What an asked accuracy sets inside, beside the transport's settings as well calibrated.
 struct Tuning {
   TransportSettings transport;
@@ -58,8 +63,9 @@ Tuning tuningFor(double accuracy, const SolveOptions& options) {
 SolverError solverError(double accuracy, double rooms, double meanReflected_lm_m2) {
   return {.surfaces = (0.0075 + 0.5 * accuracy) * std::pow(rooms, 0.125),
           .reflected = (0.0125 + 0.05 * accuracy) * std::pow(rooms, 0.25),
-          .even_lx = 0.27 * accuracy * std::pow(rooms, 0.25) * meanReflected_lm_m2,
-          .gaps = 0.025 + 0.25 * accuracy};
+          .even_lx = 0.33 * accuracy * std::pow(rooms, 0.125) * meanReflected_lm_m2,
+          .gaps = 0.0175 + 0.29 * accuracy,
+          .sunInGaps = 0.025};
 }
 
 std::vector<std::uint32_t> sidesOf(const Building& building, std::int32_t domain) {
@@ -172,7 +178,8 @@ void solveDomains(const World& world, const Study& study, const SolveOptions& op
     const Hierarchy& grown = solved.radiosity.tree;
     solution.elements += solved.statistics.empty() ? 0 : solved.statistics.back().elements;
     solution.hierarchyBytes += grown.bytes() + grown.size() * (sizeof(Columns<K>) + sizeof(Plane<K>));
-    if (solved.threshold_lm > 0.0F) reconstruct(world, solved.threshold_lm, solved.radiosity);
+    if (solved.threshold_lm > 0.0F)
+      reconstruct(world, errorOfInteraction * solved.threshold_lm, solved.radiosity);
     findBrightParts(world.layout, solved.radiosity);
     light.add(domain, std::move(solved.radiosity));
   }

@@ -56,6 +56,7 @@ template <int K>
 void Transport<K>::setFirstLight(float firstLight_lm) {
   interactions_.threshold_lm =
       settings_.epsilon * firstLight_lm * std::max(tree_.weight[0], 1e-20F) / tree_.area_m2[0];
+  interactions_.missedThreshold_lm = interactions_.threshold_lm;
 }
 
 template <int K>
@@ -107,6 +108,7 @@ void Transport<K>::transportWithinMemory(const std::vector<Sender>& senders) {
   while (isOverfull() && coarser_ < coarsest) {
     coarser_ *= coarser;
     interactions_.threshold_lm *= coarser;
+    interactions_.missedThreshold_lm *= coarser;
     transportLight(senders);
   }
   stopGrowth();
@@ -197,7 +199,7 @@ std::vector<Sender> Transport<K>::settle(const Receiver& receiver, std::vector<S
     }
     interactions_.castRays(receiver, candidates, batch, work.tally);
     for (const Candidate<K>& candidate : candidates) {
-      const Verdict verdict = interactions_.judgeSeen(receiver, candidate);
+      const Verdict verdict = interactions_.judgeSeen(receiver, candidate, work.tally);
       if (verdict != Verdict::accept) {
         decide(verdict, candidate.sender);
         continue;
