@@ -28,22 +28,29 @@ double medianOf(std::vector<double> values) {
   return *middle;
 }
 
+/// Of the median of what is stated of errors: as a share of the illuminance, and times the true ones' median.
+struct StatedMost {
+  double share, times;
+};
+
 /// What is promised of error_lx, as shares of the true illuminance: with twice the reference's deviation in
-/// squares it covers the difference at 95 % of the sensors, and its median is at most `statedMost` and five
-/// times the difference's.
+/// squares it covers the difference at 95 % of the sensors, and not by being large.
 void expectHonest(const std::vector<double>& stated, const std::vector<double>& deviation,
-                  const std::vector<double>& difference, double statedMost, const std::string& where) {
+                  const std::vector<double>& difference, const StatedMost& most, const std::string& where) {
   double covered = 0.0;
   for (std::size_t i = 0; i < stated.size(); ++i)
     covered += difference[i] <= std::hypot(stated[i], 2.0 * deviation[i]) ? 1.0 : 0.0;
   EXPECT_GE(covered, 0.95 * static_cast<double>(stated.size())) << where;
-  EXPECT_LE(medianOf(stated), std::min(statedMost, 5.0 * medianOf(difference))) << where;
+  EXPECT_LE(medianOf(stated), std::min(most.share, most.times * medianOf(difference))) << where;
 }
 
-/// The accuracy; behind blades at fine more is stated, since what is left out there is more.
-double statedMost(const std::string& room, const std::string& accuracy) {
-  if (room == "louvres" && accuracy == "fine") return std::numeric_limits<double>::infinity();
-  return accuracy == "draft" ? 0.1 : accuracy == "standard" ? 0.05 : 0.02;
+/// The accuracy and five times. Behind blades at fine more is stated, since what is left out there is more,
+/// and in a corridor that is lit through doors a quarter of its light.
+StatedMost statedMost(const std::string& room, const std::string& table, const std::string& accuracy) {
+  constexpr double any = std::numeric_limits<double>::infinity();
+  if (room == "louvres" && accuracy == "fine") return {any, 5.0};
+  if (table == "corridor_paths") return {0.25, any};
+  return {accuracy == "draft" ? 0.1 : accuracy == "standard" ? 0.05 : 0.02, 5.0};
 }
 
 // A reference room as a user would run it, with the sensors of its reference. Those at the edge of a sun
@@ -84,8 +91,8 @@ GridErrors errorsOfRoom(const std::string& name, const std::string& table, const
     deviation.push_back(reference[i].standardDeviation / truth.back());
     difference.push_back(std::abs(ours.back() - truth.back()) / truth.back());
   }
-  if (table.ends_with("_paths") && table != "corridor_paths")
-    expectHonest(stated, deviation, difference, statedMost(name, accuracy),
+  if (table.ends_with("_paths"))
+    expectHonest(stated, deviation, difference, statedMost(name, table, accuracy),
                  name + " " + table + " " + accuracy);
   EXPECT_GE(ours.size() + 20, reference.size());
   return measuredErrors(name + " " + table + " " + accuracy, ours, truth);
@@ -129,12 +136,14 @@ TEST(Reference, FloorOfOfficesKeepsToTheAccuracyAskedFor) {
   expectWithin(errorsOfRoom("floor", "clear_paths", "standard", clearSky), 0.05, 0.006);
 }
 
-// The corridor between the offices has 3 to 25 lx through their doors. Elements that few samples of a pane
-// meet were left dark where none did: 13, 12 and 11 % too dark at draft, standard and fine. Single places are
-// not as exact as asked, and stated errors cover 91 to 93 % of them (docs/validation.md).
+// The corridor between the offices has 3 to 25 lx through their doors. Few samples of a pane and few rays of
+// a link miss a door where more would not, and what took the elements that none of them met as dark was 13,
+// 12 and 11 % too dark on average at draft, standard and fine (3, 5 and 4 % with samples of panes mended
+// alone). Single places there are not as exact as asked (docs/validation.md).
 TEST(Reference, CorridorBehindDoorsIsNotTooDark) {
   EXPECT_LE(std::abs(errorsOfRoom("floor", "corridor_paths", "draft").bias), 0.1);
   EXPECT_LE(std::abs(errorsOfRoom("floor", "corridor_paths", "standard").bias), 0.05);
+  EXPECT_LE(std::abs(errorsOfRoom("floor", "corridor_paths", "fine").bias), 0.02);
 }
 
 // A hundred white blades before a window, three times as deep as they are apart: half of the light near the
