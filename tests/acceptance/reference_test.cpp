@@ -141,7 +141,9 @@ TEST(Reference, FloorOfOfficesKeepsToTheAccuracyAskedFor) {
 // 12 and 11 % too dark on average at draft, standard and fine (3, 5 and 4 % with samples of panes mended
 // alone). Single places there are not as exact as asked (docs/validation.md).
 TEST(Reference, CorridorBehindDoorsIsNotTooDark) {
-  EXPECT_LE(std::abs(errorsOfRoom("floor", "corridor_paths", "draft").bias), 0.1);
+  const GridErrors draft = errorsOfRoom("floor", "corridor_paths", "draft");
+  EXPECT_LE(std::abs(draft.bias), 0.1);
+  EXPECT_LE(draft.rms, 0.08);  // 0.1 where light that falls off along it was smoothed away as noise
   EXPECT_LE(std::abs(errorsOfRoom("floor", "corridor_paths", "standard").bias), 0.05);
   EXPECT_LE(std::abs(errorsOfRoom("floor", "corridor_paths", "fine").bias), 0.02);
 }
