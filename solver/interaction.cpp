@@ -22,7 +22,7 @@ constexpr float touching_m = 1e-5F;  // below this a point counts as in a plane
 // Calibrated on the furnished office (docs/validation.md): errors of surfaces against time.
 constexpr float raysInsteadOfLinks = 32.0F;  // up to so many, links are not even looked for
 constexpr float weakRaysLeast = 16.0F, weakRaysMost = 256.0F;
-constexpr float looksPerThreshold = 8.0F;
+constexpr float looksPerThreshold = 8.0F;  // further ones, where all rays of a link agree
 constexpr std::uint32_t raysToPanes = 16;
 constexpr float darkerBySender = 0.2F;  // thresholds that a sender's own shadow may take off
 constexpr float clusterTakes = 5.0F;    // thresholds that a cluster takes as one mean
