@@ -22,7 +22,7 @@ constexpr float touching_m = 1e-5F;  // below this a point counts as in a plane
 // Calibrated on the furnished office (docs/validation.md): errors of surfaces against time.
 constexpr float raysInsteadOfLinks = 32.0F;  // up to so many, links are not even looked for
 constexpr float weakRaysLeast = 16.0F, weakRaysMost = 256.0F;
-constexpr float looksPerThreshold = 8.0F;  // further ones, where all rays of a link agree
+constexpr float looksIntoDark = 16.0F, looksForShadow = 8.0F;  // further ones, where all rays agree
 constexpr std::uint32_t raysToPanes = 16;
 constexpr float darkerBySender = 0.2F;  // thresholds that a sender's own shadow may take off
 constexpr float clusterTakes = 5.0F;    // thresholds that a cluster takes as one mean
@@ -269,14 +269,14 @@ template <int K>
 Verdict Interactions<K>::judgeSeen(const Receiver& receiver, const Candidate<K>& candidate,
                                    Tally& tally) const {
   if (receiver.isCluster() || settings_.oracle == Oracle::transportedPower) return Verdict::accept;
-  const Verdict verdict = judgeVisible(receiver, candidate, candidate.visible);
+  const Verdict verdict = judgeVisible(receiver, candidate, candidate.visible, threshold_lm);
   const bool isDark = candidate.visible <= 0.0F;
   const bool agree = isDark || candidate.visible >= 1.0F;
   const std::uint32_t rays = raysOf(receiver, candidate);
-  const bool mayErr = agree && rays > 0 && !tree_.isCluster(candidate.sender) && missedThreshold_lm > 0.0F;
+  const bool mayErr = agree && rays > 0 && !tree_.isCluster(candidate.sender);
   if (verdict != Verdict::accept || !mayErr) return verdict;
   const float ofOne = 1.0F / static_cast<float>(rays);
-  const Verdict other = judgeVisible(receiver, candidate, isDark ? ofOne : 1.0F - ofOne);
+  const Verdict other = judgeVisible(receiver, candidate, isDark ? ofOne : 1.0F - ofOne, missedThreshold_lm);
   return other != Verdict::accept && isOtherwise(receiver, candidate, tally) ? other : verdict;
 }
 
@@ -287,14 +287,15 @@ bool Interactions<K>::isOtherwise(const Receiver& receiver, const Candidate<K>& 
   const NodeIndex sender = candidate.sender;
   const Target target{tree_.polygon(sender), rayOffset_m * tree_.normal(sender),
                       mixKeys(tree_.key[sender], 0x11)};
-  const float looks = looksPerThreshold * powerOf(receiver, candidate) / missedThreshold_lm;
-  return findsWay(world_, receiver, target, candidate.visible > 0.0F ? Way::blocked : Way::open, looks,
-                  tally.rays);
+  const float thresholds = powerOf(receiver, candidate) / missedThreshold_lm;
+  return candidate.visible > 0.0F
+             ? findsWay(world_, receiver, target, Way::blocked, looksForShadow * thresholds, tally.rays)
+             : findsWay(world_, receiver, target, Way::open, looksIntoDark * thresholds, tally.rays);
 }
 
 template <int K>
-Verdict Interactions<K>::judgeVisible(const Receiver& receiver, const Candidate<K>& candidate,
-                                      float visible) const {
+Verdict Interactions<K>::judgeVisible(const Receiver& receiver, const Candidate<K>& candidate, float visible,
+                                      float allowed_lm) const {
   const NodeIndex sender = candidate.sender;
   const Link& link = candidate.link;
   const bool canRefineReceiver = canDivide(receiver);
@@ -311,13 +312,13 @@ Verdict Interactions<K>::judgeVisible(const Receiver& receiver, const Candidate<
     senderError = (tree_.isCluster(sender) ? 0.5F : linearDeviation) * uneven(sender) * arriving * visible *
                   senderShare;
   }
-  if (senderError > threshold_lm && senderError >= receiverError) return Verdict::refineSender;
-  if (receiverError > threshold_lm && canRefineReceiver) return Verdict::refineReceiver;
-  if (senderError > threshold_lm) return Verdict::refineSender;
-  if (shadowError > threshold_lm) return refineLarger(receiver, sender);
+  if (senderError > allowed_lm && senderError >= receiverError) return Verdict::refineSender;
+  if (receiverError > allowed_lm && canRefineReceiver) return Verdict::refineReceiver;
+  if (senderError > allowed_lm) return Verdict::refineSender;
+  if (shadowError > allowed_lm) return refineLarger(receiver, sender);
   // Of a sender half in shadow the lit parts are mostly those that are seen: their mean errs the same way for
   // all receivers.
-  if (canRefineSender && uneven(sender) * arriving * spreadOfShadow > darkerBySender * threshold_lm)
+  if (canRefineSender && uneven(sender) * arriving * spreadOfShadow > darkerBySender * allowed_lm)
     return Verdict::refineSender;
   return Verdict::accept;
 }

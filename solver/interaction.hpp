@@ -63,7 +63,8 @@ class Interactions {
 
   /// lm that one interaction may err by, or move.
   float threshold_lm = 0.0F;
-  /// The same for what the rays of a link have missed, which is far less; 0: that is not looked for.
+  /// From where on it counts what the rays of a link have missed: by the first step's threshold, not by the
+  /// lower ones of a bright room's many steps.
   float missedThreshold_lm = 0.0F;
   /// Whether receivers may be divided further.
   bool mayGrow = true;
@@ -118,8 +119,8 @@ class Interactions {
   [[nodiscard]] Verdict judgeCluster(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
   [[nodiscard]] Verdict judgeElement(const Receiver& receiver, NodeIndex sender, const Sight& seen) const;
   bool isOtherwise(const Receiver& receiver, const Candidate<K>& candidate, Tally& tally) const;
-  [[nodiscard]] Verdict judgeVisible(const Receiver& receiver, const Candidate<K>& candidate,
-                                     float visible) const;
+  [[nodiscard]] Verdict judgeVisible(const Receiver& receiver, const Candidate<K>& candidate, float visible,
+                                     float allowed_lm) const;
   void measureNear(const Receiver& receiver, NodeIndex sender, float apart, Link& link) const;
   [[nodiscard]] std::uint32_t raysOf(const Receiver& receiver, const Candidate<K>& candidate) const;
   void layRays(const Receiver& receiver, const Candidate<K>& candidate, RayBatch& batch) const;

@@ -14,7 +14,6 @@ namespace {
 
 constexpr float stepsTogether = 6.0F;  // that may err by a whole threshold each
 constexpr float fadeLeast = 0.01F;     // of a step against the one before, for what is asked of interactions
-constexpr int stepsOfShadows = 4;      // what is left then is even; in a bright room many steps send it on
 
 // The last interaction is the root's self link: the rest of the series in closed form, E = M / (1 -
 // reflectance) with M the mean unshot exitance; in an open domain only the share that does not escape comes
@@ -95,7 +94,6 @@ SolvedDomain<K> shootingHR(const SolvedLight<K>& light, std::int32_t domain, Hie
 
   for (int step = 1; step <= settings.stepsMax; ++step) {
     const Stopwatch watch;
-    if (step > stepsOfShadows) transport.trustRays();
     const std::size_t nodesBefore = tree.size();
     const std::size_t cached = cache.size();
     transport.send(unshot, step == 1);

@@ -62,10 +62,10 @@ Tuning tuningFor(double accuracy, const SolveOptions& options) {
 /// slowly.
 SolverError solverError(double accuracy, double rooms, double meanReflected_lm_m2) {
   return {.surfaces = (0.0075 + 0.5 * accuracy) * std::pow(rooms, 0.125),
-          .reflected = (0.0125 + 0.05 * accuracy) * std::pow(rooms, 0.25),
-          .even_lx = 0.33 * accuracy * std::pow(rooms, 0.125) * meanReflected_lm_m2,
+          .reflected = (0.0125 + 0.07 * accuracy) * std::pow(rooms, 0.25),
+          .even_lx = 0.32 * accuracy * std::pow(rooms, 0.125) * meanReflected_lm_m2,
           .gaps = 0.0175 + 0.29 * accuracy,
-          .sunInGaps = 0.025};
+          .sunInGaps = 0.029};
 }
 
 std::vector<std::uint32_t> sidesOf(const Building& building, std::int32_t domain) {

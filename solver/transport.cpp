@@ -56,7 +56,9 @@ template <int K>
 void Transport<K>::setFirstLight(float firstLight_lm) {
   interactions_.threshold_lm =
       settings_.epsilon * firstLight_lm * std::max(tree_.weight[0], 1e-20F) / tree_.area_m2[0];
-  interactions_.missedThreshold_lm = interactions_.threshold_lm;
+  constexpr float missed =
+      2.0F;  // at 1 bright rooms take 2 % more rays, a corridor behind doors is 1 % brighter
+  interactions_.missedThreshold_lm = missed * interactions_.threshold_lm;
 }
 
 template <int K>

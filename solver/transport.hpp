@@ -50,8 +50,6 @@ class Transport {
   /// Sets what one interaction may err by, from the light that the domain starts with. [lm]
   void setFirstLight(float firstLight_lm);
   /// Sets it for what is sent from now on. [lm]
-  /// From here on it is not looked for what the rays of links have missed.
-  void trustRays() { interactions_.missedThreshold_lm = 0.0F; }
   void setThreshold(float threshold_lm) { interactions_.threshold_lm = coarser_ * threshold_lm; }
   [[nodiscard]] float threshold_lm() const { return interactions_.threshold_lm; }
 

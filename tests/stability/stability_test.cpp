@@ -121,7 +121,7 @@ void expectBrightRoom(double reflectance, const Bounds& bounds = {}) {
 }
 
 TEST(Stability, Reflectance99) {
-  expectBrightRoom(0.99, {.rays = 60000000});  // at fine 55 million in 45 steps
+  expectBrightRoom(0.99);
 }
 // Its 130 steps take 81 million rays at fine. With 50 million, each step held to a quarter of the threshold
 // instead of a sixteenth, it is 10, 3.3 and 2.4 % too dark against paths.
